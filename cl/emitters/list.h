@@ -1,0 +1,47 @@
+// The emitters: one row and one file cl/emitters/NAME.cl each.
+#ifndef OPAL_EMITTER_LIST_H
+#define OPAL_EMITTER_LIST_H
+
+#include "shared/glue.h"
+
+#define OPAL_EMITTERS(EMITTER) \
+    EMITTER(mesh)          /* a triangle mesh that emits */ \
+    EMITTER(parallelogram) /* a parallelogram that emits, sampled as one piece */ \
+    EMITTER(point)         /* a point, seen by light sampling only */
+
+#define OPAL_EMITTER_ENUM(name) EMITTER_##name,
+enum { OPAL_EMITTERS(OPAL_EMITTER_ENUM) EMITTER_COUNT };
+
+#ifndef __OPENCL_VERSION__
+namespace opal {
+#endif
+
+// One emitter. Positions and areas are in the flattened scene's units (FlatScene::center, FlatScene::scale).
+typedef struct {
+    uint kind;            // EMITTER_*
+    float radiance[3];    // W / (m^2 sr); point: intensity, W / sr, times FlatScene::scale^2
+    float origin[3];      // parallelogram: a corner; point: its position
+    float area;           // of the whole emitter
+    float u[3], v[3];     // parallelogram: its edges; it emits on the side of u x v
+    uint first, count;    // mesh: its rows of the light triangle table
+    float probability;    // of being chosen (--emitter-choice)
+    float accept;         // alias table: keep this row if a uniform number is below, else take row `other`
+    uint other;
+    uint pad;
+} EmitterRecord;
+OPAL_SIZE_CHECK(EmitterRecord, 80);
+
+// One triangle of a mesh light, with its row of the mesh's alias table (Vose 1991). `other` counts from the mesh's first.
+typedef struct {
+    uint slot;            // where its vertices are: TriangleBlock slot / 8, place slot % 8
+    float accept;
+    uint other;
+    float probability;    // of being chosen within its mesh (--triangle-choice)
+} LightTriangle;
+OPAL_SIZE_CHECK(LightTriangle, 16);
+
+#ifndef __OPENCL_VERSION__
+}
+#endif
+
+#endif

@@ -1,0 +1,73 @@
+// The strategy axes and their choices, each name written once: command-line flag, JSON key, kernel constant.
+//
+// A row's name is spelled with '_' here and with '-' on the command line. The device asks CHOSEN(scene, lighting, mis);
+// where the kernel is specialised this is a constant, in the general kernel it is read from Settings.
+#ifndef OPAL_STRATEGY_H
+#define OPAL_STRATEGY_H
+
+#define OPAL_AXES(AXIS) \
+    AXIS(integrator, "what the image estimates") \
+    AXIS(lighting, "how light is found: by BSDF sampling, by emitter sampling, or by both with MIS") \
+    AXIS(mis, "how MIS weighs its two samples (Veach 1997, section 9.2)") \
+    AXIS(hemisphere, "how a diffuse surface draws directions") \
+    AXIS(emitter_choice, "how an emitter is chosen for light sampling") \
+    AXIS(triangle_choice, "how a triangle is chosen within a mesh light") \
+    AXIS(rr, "Russian roulette: how the probability to survive is found") \
+    AXIS(sampler, "where the random numbers come from")
+
+#define OPAL_CHOICES_integrator(CHOICE) \
+    CHOICE(integrator, normals, "shading normals as colours") \
+    CHOICE(integrator, ao, "ambient occlusion, unbounded") \
+    CHOICE(integrator, simple, "one point light, no bounces") \
+    CHOICE(integrator, whitted, "direct light by emitter sampling, specular surfaces followed") \
+    CHOICE(integrator, direct_lighting, "one bounce of direct light") \
+    CHOICE(integrator, path, "full path tracing")
+
+#define OPAL_CHOICES_lighting(CHOICE) \
+    CHOICE(lighting, bsdf, "follow BSDF samples until they hit a light") \
+    CHOICE(lighting, emitter, "sample points on lights (next-event estimation)") \
+    CHOICE(lighting, mis, "both, weighted by multiple importance sampling")
+
+#define OPAL_CHOICES_mis(CHOICE) \
+    CHOICE(mis, balance, "balance heuristic") \
+    CHOICE(mis, power, "power heuristic, beta = 2") \
+    CHOICE(mis, one_sample, "one of both with probability 1/2, balance heuristic (direct_lighting only)")
+
+#define OPAL_CHOICES_hemisphere(CHOICE) \
+    CHOICE(hemisphere, material, "what each material's use_cosine says") \
+    CHOICE(hemisphere, uniform, "uniform over the hemisphere") \
+    CHOICE(hemisphere, cosine, "in proportion to the cosine")
+
+#define OPAL_CHOICES_emitter_choice(CHOICE) \
+    CHOICE(emitter_choice, uniform, "all alike") \
+    CHOICE(emitter_choice, power, "in proportion to the emitted power")
+
+#define OPAL_CHOICES_triangle_choice(CHOICE) \
+    CHOICE(triangle_choice, area, "in proportion to the area") \
+    CHOICE(triangle_choice, uniform, "all alike")
+
+#define OPAL_CHOICES_rr(CHOICE) \
+    CHOICE(rr, off, "paths end by --max-depth or when they carry nothing") \
+    CHOICE(rr, fixed, "survive with one probability, --rr-prob") \
+    CHOICE(rr, throughput, "survive in proportion to the throughput") \
+    CHOICE(rr, throughput_eta, "throughput without the (1/eta)^2 that refraction scaled it by")
+
+#define OPAL_CHOICES_sampler(CHOICE) \
+    CHOICE(sampler, independent, "hashed, every number on its own") \
+    CHOICE(sampler, stratified, "jittered strata, shuffled for each dimension") \
+    CHOICE(sampler, sobol, "Owen-scrambled Sobol pairs (Burley 2020)")
+
+#define OPAL_AXIS_ENUM(axis, help) AXIS_##axis,
+enum { OPAL_AXES(OPAL_AXIS_ENUM) AXIS_COUNT };
+
+#define OPAL_CHOICE_ENUM(axis, choice, help) CHOICE_##axis##_##choice,
+enum { OPAL_CHOICES_integrator(OPAL_CHOICE_ENUM) };
+enum { OPAL_CHOICES_lighting(OPAL_CHOICE_ENUM) };
+enum { OPAL_CHOICES_mis(OPAL_CHOICE_ENUM) };
+enum { OPAL_CHOICES_hemisphere(OPAL_CHOICE_ENUM) };
+enum { OPAL_CHOICES_emitter_choice(OPAL_CHOICE_ENUM) };
+enum { OPAL_CHOICES_triangle_choice(OPAL_CHOICE_ENUM) };
+enum { OPAL_CHOICES_rr(OPAL_CHOICE_ENUM) };
+enum { OPAL_CHOICES_sampler(OPAL_CHOICE_ENUM) };
+
+#endif

@@ -1,0 +1,88 @@
+// The records that host and device share, apart from BSDFs and emitters (bsdfs/list.h, emitters/list.h).
+#ifndef OPAL_TYPES_H
+#define OPAL_TYPES_H
+
+#include "shared/glue.h"
+#include "shared/strategy.h"
+
+#ifndef __OPENCL_VERSION__
+namespace opal {
+#endif
+
+#define OPAL_NONE 0xffffffffu        // no emitter, no normal, no hit, no depth limit
+#define OPAL_LEAF 0x80000000u        // a child that is a triangle block
+#define OPAL_TINY_TRIANGLES 48       // no tree up to this many triangles where lanes are many ...
+#define OPAL_TINY_VERTICES 96        // ... and up to this many distinct vertices
+
+// A node of the 8-wide tree: the boxes of its children, one axis and side a row, and what they are.
+// An unused child has lo = +inf, hi = -inf. A child is a node's index, or OPAL_LEAF | index of a block.
+typedef struct {
+    float lo[3][8];
+    float hi[3][8];
+    uint child[8];
+} BvhNode;
+OPAL_SIZE_CHECK(BvhNode, 224);
+
+// Eight triangles: vertex[corner][axis][place]. Unused places repeat one point, which no ray hits, and have id OPAL_NONE.
+typedef struct {
+    float vertex[3][3][8];
+    uint id[8];           // index into the Triangle array
+} TriangleBlock;
+OPAL_SIZE_CHECK(TriangleBlock, 320);
+
+// What shading needs of a triangle beside its vertices.
+typedef struct {
+    uint normal[3];       // of each corner, an index into the normals (3 floats each); OPAL_NONE: use the geometric one
+    uint mesh;
+} Triangle;
+OPAL_SIZE_CHECK(Triangle, 16);
+
+// Without a tree: a triangle's corners in the array of distinct vertices, and its slot (block * 8 + place).
+typedef struct {
+    uint corner[3];
+    uint slot;
+} TinyTriangle;
+OPAL_SIZE_CHECK(TinyTriangle, 16);
+
+// A mesh: index of its BSDF, and of its emitter or OPAL_NONE.
+typedef struct {
+    uint bsdf, emitter;
+} MeshRecord;
+OPAL_SIZE_CHECK(MeshRecord, 8);
+
+#define OPAL_FILTERS(FILTER) FILTER(box) FILTER(tent) FILTER(gaussian) FILTER(mitchell)
+#define OPAL_FILTER_ENUM(name) FILTER_##name,
+enum { OPAL_FILTERS(OPAL_FILTER_ENUM) FILTER_COUNT };
+
+// Everything that is a number and not a table. Positions are in the flattened scene's units.
+typedef struct {
+    float camera_origin[3];
+    float camera_left[3], camera_up[3], camera_forward[3]; // world-space columns of toWorld, without translation
+    float tan_half_x, tan_half_y;   // film half extents at distance 1
+    float near_clip, far_clip;      // along camera_forward, in camera space times FlatScene::scale
+    uint width, height;             // pixels
+    uint spp;                       // samples of a pixel in the whole render (the strata of --sampler stratified)
+    uint seed;
+    uint root;                      // of the tree, as BvhNode::child
+    uint tiny_triangle_count, tiny_vertex_count;
+    uint emitter_count;
+    uint max_depth;                 // segments of the longest path: 1 shows emitters, 2 adds direct light; OPAL_NONE: no limit
+    uint rr_depth;                  // roulette starts when a path has this many segments
+    float rr_prob;                  // --rr fixed: probability to survive
+    uint normals_signed;            // integrator normals: n/2 + 1/2 (1) or |n| (0)
+    float light_position[3];        // integrator simple
+    float light_energy[3];          // integrator simple, W, times FlatScene::scale^2
+    int filter;                     // FILTER_*
+    float filter_radius;            // pixels
+    float filter_stddev;            // gaussian, pixels
+    float filter_b, filter_c;       // mitchell
+    int choices[AXIS_COUNT];        // CHOICE_* of each axis; read by the general kernel only
+    uint pad;
+} Settings;
+OPAL_SIZE_CHECK(Settings, 192);
+
+#ifndef __OPENCL_VERSION__
+}
+#endif
+
+#endif

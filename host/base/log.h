@@ -1,0 +1,14 @@
+// What Opal says beside its results: to stderr, one line each. Warnings are kept, so that tests and JSON can show them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace opal {
+
+void set_quiet(bool quiet);             // --quiet silences info, never warnings
+void info(const std::string &line);
+void warn(const std::string &line);     // prints "warning: ..."
+const std::vector<std::string> &warnings();
+
+} // namespace opal

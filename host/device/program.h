@@ -1,0 +1,34 @@
+// From features to a compiled program: the text is self-contained, so that drivers cache it rightly.
+#pragma once
+
+#include "device/context.h"
+#include "flatten/flat_scene.h"
+
+#include <map>
+
+namespace opal {
+
+struct BuildOptions {
+    int lanes = 1;
+    bool double_precision = false;      // OPAL_DOUBLE
+    MathMode math = MathMode::precise;
+    std::string kernels = "kernels/render.cl"; // the file with the entry points, below cl/
+};
+
+// The sources below cl/, embedded in the binary or read from --cl-dir.
+struct Sources {
+    std::map<std::string, std::string> files; // "math.cl" -> text
+    static const Sources &embedded();
+    static Sources from_folder(const std::string &folder);
+    // Text of `file` with every #include "x" expanded once, in place, between #line directives. Error: file:line of an
+    // include that is not there, and what is.
+    std::string expand(const std::string &file) const;
+};
+
+// Defines (every feature, every axis, LANES, OPAL_DOUBLE, OPAL_FAST) followed by the expanded sources.
+std::string program_text(const Features &features, const BuildOptions &options, const Sources &sources);
+
+// Compiles with -cl-std=CL1.2 -Werror (and, for MathMode::fast, -cl-fast-relaxed-math). Error: device, driver, build log.
+cl::Program build_program(const Device &device, const std::string &text, const BuildOptions &options, double *seconds = nullptr);
+
+} // namespace opal

@@ -1,0 +1,89 @@
+// A scene as it was written, all defaults resolved: plain values in world units and double precision.
+#pragma once
+
+#include "base/math.h"
+#include "bsdfs/list.h"
+#include "emitters/list.h"
+#include "scene/strategy.h"
+#include "shared/types.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace opal {
+
+// Where in a file something was written; line and column count from 1, 0 where there is no such place.
+struct SourcePlace {
+    std::string file;
+    int line = 0, column = 0;
+    std::string text() const; // "file:line:col"
+};
+
+using Color = std::array<double, 3>; // linear RGB
+
+struct Bsdf {
+    BsdfRecord record{}; // kind and parameters, ready for the device
+    SourcePlace place;
+};
+
+struct TriangleMesh {
+    std::vector<Vec3> positions;                      // world space
+    std::vector<Vec3> normals;                        // world space, unit; may be empty
+    struct Corner { unsigned position, normal; };     // normal = OPAL_NONE: geometric
+    std::vector<std::array<Corner, 3>> triangles;     // degenerate ones already dropped
+};
+
+struct Parallelogram {
+    Vec3 origin, u, v; // world space; front side u x v
+};
+
+struct Mesh {
+    std::string name;                                  // file name or given name
+    std::variant<TriangleMesh, Parallelogram> shape;
+    Bsdf bsdf;
+    std::optional<Color> radiance;                     // of its area emitter, W / (m^2 sr)
+    SourcePlace place;
+};
+
+struct PointLight {
+    Vec3 position;
+    Color power; // W; intensity = power / (4 pi)
+    SourcePlace place;
+};
+
+struct Filter {
+    int kind = FILTER_box;
+    double radius = 0.5, stddev = 0.5, b = 1.0 / 3, c = 1.0 / 3;
+    bool given = false; // written in the scene, not the dialect's default
+};
+
+struct Camera {
+    Transform to_world;
+    int width = 1280, height = 720;
+    double fov = 30;                         // full horizontal angle, degrees
+    double near_clip = 1e-4, far_clip = 1e4; // planar, camera space
+    Filter filter;
+    SourcePlace place;
+};
+
+struct SimpleLight { // integrator `simple`
+    Vec3 position;
+    Color energy{};
+};
+
+struct SceneDescription {
+    std::filesystem::path file;
+    Camera camera;
+    std::vector<Mesh> meshes;
+    std::vector<PointLight> point_lights;
+    std::string integrator_type = "path_mis"; // as written, e.g. path_tracer_recursive
+    Strategy strategy;
+    bool normals_signed = false;
+    SimpleLight simple_light;
+    unsigned spp = 1;
+};
+
+} // namespace opal
