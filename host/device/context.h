@@ -6,6 +6,8 @@
 #define CL_HPP_ENABLE_EXCEPTIONS
 #include <CL/opencl.hpp>
 
+#include "base/error.h"
+
 #include <string>
 #include <vector>
 
@@ -18,12 +20,14 @@ struct DeviceInfo {
     unsigned compute_units = 0;
     bool fp64 = false;
     int native_lanes = 1;             // 1 on a GPU, else the native float vector width: 1, 4, 8 or 16
+    std::string icd;                  // the driver's .icd file; empty: whatever the loader finds
+    int platform_place = 0, device_place = 0; // among what that driver alone lists
     std::string problem;              // why the platform or device could not be asked ("crashed", "timed out"), else empty
 };
 
-// Asks every platform in a process of its own (this binary with the hidden command `probe-platform N`), so that one that
-// crashes or hangs costs its line and nothing else.
-std::vector<DeviceInfo> list_devices();
+// Asks every driver in a process of its own (device/probe.h), all at once, so that one that crashes or hangs costs its
+// line and nothing else. time_limit: seconds for each.
+std::vector<DeviceInfo> list_devices(double time_limit = 20);
 
 // The device `render` takes: `wanted` is an index, "cpu", "gpu" or part of a name; empty: the default, with the reason.
 struct DevicePick { DeviceInfo info; std::string reason; };
@@ -35,6 +39,19 @@ struct Device {
     cl::Context context;
     cl::CommandQueue queue; // in order, profiling on
 };
+// Loads that device's driver and no other into this process. Error naming the device and the OpenCL error.
 Device open_device(const DeviceInfo &info);
+
+// "CL_OUT_OF_RESOURCES" for -5; "OpenCL error -9999" for what OpenCL 1.2 does not name.
+std::string cl_error_name(int code);
+
+// Runs `body`; a cl::Error in it becomes an Error "DEVICE: CALL failed: CL_NAME".
+template <class Body> auto with_device(const DeviceInfo &info, Body &&body) {
+    try {
+        return body();
+    } catch (const cl::Error &error) {
+        throw Error(info.name + ": " + error.what() + " failed: " + cl_error_name(error.err()));
+    }
+}
 
 } // namespace opal

@@ -1,0 +1,58 @@
+#include "commands/commands.h"
+#include "device/info_json.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace opal {
+
+namespace {
+
+struct DevicesOptions {
+    bool json = false;
+    std::string device;
+    double time_limit = 20;
+};
+
+std::string memory_text(unsigned long long bytes) { return fmt::format("{:.1f} GiB", static_cast<double>(bytes) / (1 << 30)); }
+
+void print_table(const std::vector<DeviceInfo> &devices) {
+    constexpr const char *row = "{:>5}  {:<11}  {:>5}  {:>10}  {:>4}  {:>5}  {}\n";
+    fmt::print(row, "index", "type", "units", "memory", "fp64", "lanes", "name");
+    for (const DeviceInfo &d : devices) {
+        if (!d.problem.empty()) {
+            fmt::print("{:>5}  {}{}: {}\n", d.index, d.platform, d.name.empty() ? "" : ", " + d.name, d.problem);
+            continue;
+        }
+        fmt::print(row, d.index, d.type, d.compute_units, memory_text(d.memory), d.fp64 ? "yes" : "no", d.native_lanes, d.name);
+        fmt::print("{:>46}  {}; {}; driver {}\n", "", d.platform, d.version, d.driver);
+    }
+}
+
+int run_devices(const DevicesOptions &options) {
+    const std::vector<DeviceInfo> devices = list_devices(options.time_limit);
+    if (!options.json)
+        print_table(devices);
+    const DevicePick pick = pick_device(options.device, devices);
+    if (!options.json) {
+        fmt::print("\nrender takes {}: {} ({}). --device takes an index, cpu, gpu, or part of a name.\n", pick.info.index,
+                   pick.info.name, pick.reason);
+        return 0;
+    }
+    fmt::print("{}
+", dump({{"devices", devices}, {"pick", pick.info.index}, {"reason", pick.reason}}, 2));
+    return 0;
+}
+
+} // namespace
+
+RunCommand setup_devices(CLI::App &app) {
+    auto options = std::make_shared<DevicesOptions>();
+    app.add_flag("--json", options->json, "Print JSON");
+    app.add_option("--device", options->device, "What `render` would take: an index, cpu, gpu, or part of a name");
+    app.add_option("--time-limit", options->time_limit, "Seconds that a driver has to answer")->check(CLI::PositiveNumber);
+    return [options] { return run_devices(*options); };
+}
+
+} // namespace opal

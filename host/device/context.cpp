@@ -1,0 +1,115 @@
+#include "device/context.h"
+
+#include "device/load_driver.h"
+#include "device/probe.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+namespace opal {
+
+namespace {
+
+std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text;
+}
+
+bool contains(const std::string &text, const std::string &part) { return lower(text).find(lower(part)) != std::string::npos; }
+
+// Mesa's software rasterisers call themselves GPUs or CPUs; a ray caster got wrong hits on them (DESIGN section 5).
+bool is_software_rasteriser(const DeviceInfo &info) {
+    return contains(info.name, "llvmpipe") || contains(info.name, "softpipe") || contains(info.name, "swrast");
+}
+
+std::string list_of(const std::vector<DeviceInfo> &devices) {
+    std::vector<std::string> lines;
+    for (const DeviceInfo &d : devices)
+        lines.push_back(d.problem.empty() ? fmt::format("{} ({}, {})", d.index, d.type, d.name)
+                                          : fmt::format("{} ({}: {})", d.index, d.platform, d.problem));
+    return lines.empty() ? "none (is an OpenCL driver installed? Debian: apt-get install pocl-opencl-icd)"
+                         : fmt::format("{}", fmt::join(lines, ", "));
+}
+
+DevicePick default_device(const std::vector<DeviceInfo> &devices) {
+    const DeviceInfo *best = nullptr;
+    int best_rank = 0;
+    for (const DeviceInfo &device : devices) {
+        const int rank = !device.problem.empty()           ? 0
+                         : is_software_rasteriser(device)  ? 1
+                         : device.type == "accelerator"    ? 2
+                         : device.type == "cpu"            ? 3
+                                                           : 4;
+        if (rank > best_rank) {
+            best = &device;
+            best_rank = rank;
+        }
+    }
+    static const char *const reasons[] = {"", "only a software rasteriser was found", "no GPU and no CPU device was found",
+                                          "the first CPU device, as there is no GPU", "the first GPU"};
+    if (!best)
+        throw Error("no usable OpenCL device; found: " + list_of(devices));
+    return {*best, reasons[best_rank]};
+}
+
+std::optional<int> as_index(const std::string &text) {
+    int value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size() ? std::optional<int>(value) : std::nullopt;
+}
+
+// Whether `wanted` means this device, and as what.
+std::optional<std::string> match(const DeviceInfo &device, const std::string &wanted) {
+    if (const auto index = as_index(wanted))
+        return *index == device.index ? std::optional<std::string>("asked for by index") : std::nullopt;
+    if (const std::string type = lower(wanted); type == "cpu" || type == "gpu")
+        return device.type == type ? std::optional<std::string>("the first " + type + " device") : std::nullopt;
+    if (contains(device.name, wanted) || contains(device.platform, wanted))
+        return fmt::format("the first whose name holds \"{}\"", wanted);
+    return std::nullopt;
+}
+
+} // namespace
+
+std::vector<DeviceInfo> list_devices(double time_limit) {
+    std::vector<DeviceInfo> devices = probe_drivers(find_drivers(), time_limit);
+    for (size_t i = 0; i < devices.size(); ++i)
+        devices[i].index = static_cast<int>(i);
+    return devices;
+}
+
+DevicePick pick_device(const std::string &wanted, const std::vector<DeviceInfo> &devices) {
+    if (wanted.empty())
+        return default_device(devices);
+    const DeviceInfo *unusable = nullptr;
+    for (const DeviceInfo &device : devices)
+        if (const auto reason = match(device, wanted)) {
+            if (device.problem.empty())
+                return {device, *reason};
+            unusable = unusable ? unusable : &device;
+        }
+    if (unusable)
+        throw Error(fmt::format("device {} ({}) cannot be used: it {}; available: {}", unusable->index, unusable->platform,
+                                unusable->problem, list_of(devices)));
+    throw Error(fmt::format("no OpenCL device \"{}\"; available: {}", wanted, list_of(devices)));
+}
+
+Device open_device(const DeviceInfo &info) {
+    return with_device(info, [&] {
+        std::optional<Device> found;
+        for_each_device(info.icd, [&](const DeviceInfo &seen, const cl::Device &device) {
+            if (seen.platform_place == info.platform_place && seen.device_place == info.device_place && seen.name == info.name)
+                found = Device{info, device, cl::Context(), cl::CommandQueue()};
+        });
+        if (!found)
+            throw Error(fmt::format("{}: the device is gone since the drivers were asked", info.name));
+        found->context = cl::Context(found->device);
+        found->queue = cl::CommandQueue(found->context, found->device, CL_QUEUE_PROFILING_ENABLE);
+        return *found;
+    });
+}
+
+} // namespace opal

@@ -1,0 +1,111 @@
+#include "device/program.h"
+
+#include "base/error.h"
+#include "device/embedded.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+namespace opal {
+
+namespace {
+
+// The name between the quotes of `#include "name"`; empty where the line is no such directive.
+std::string included_file(const std::string &line) {
+    size_t at = line.find_first_not_of(" \t");
+    if (at == std::string::npos || line[at] != '#')
+        return {};
+    at = line.find_first_not_of(" \t", at + 1);
+    if (at == std::string::npos || line.compare(at, 7, "include") != 0)
+        return {};
+    const size_t open = line.find('"', at + 7);
+    const size_t close = open == std::string::npos ? open : line.find('"', open + 1);
+    return close == std::string::npos ? std::string() : line.substr(open + 1, close - open - 1);
+}
+
+std::string names_of(const std::map<std::string, std::string> &files) {
+    std::vector<std::string> names;
+    for (const auto &[name, text] : files)
+        names.push_back(name);
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+class Expansion {
+public:
+    explicit Expansion(const std::map<std::string, std::string> &files) : files_(files) {}
+
+    void append(const std::string &name, const std::string &asked_from) {
+        const auto found = files_.find(name);
+        if (found == files_.end())
+            throw Error(fmt::format("{}: no file \"{}\" below cl/; available: {}", asked_from, name, names_of(files_)));
+        if (!done_.insert(name).second) {
+            text_ += '\n'; // keeps the place of the directive
+            return;
+        }
+        std::istringstream lines(found->second);
+        std::string line;
+        text_ += fmt::format("#line 1 \"cl/{}\"\n", name);
+        for (int number = 1; std::getline(lines, line); ++number)
+            append_line(name, line, number);
+    }
+
+    std::string take() { return std::move(text_); }
+
+private:
+    void append_line(const std::string &name, const std::string &line, int number) {
+        const std::string include = included_file(line);
+        if (include.empty()) {
+            text_ += line + '\n';
+            return;
+        }
+        const bool again = done_.count(include) != 0;
+        append(include, fmt::format("cl/{}:{}", name, number));
+        if (!again)
+            text_ += fmt::format("#line {} \"cl/{}\"\n", number + 1, name);
+    }
+
+    const std::map<std::string, std::string> &files_;
+    std::set<std::string> done_;
+    std::string text_;
+};
+
+std::string read_text(const std::filesystem::path &file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    if (!stream)
+        throw Error(fmt::format("{}: cannot be read", file.string()));
+    return text.str();
+}
+
+} // namespace
+
+const Sources &Sources::embedded() {
+    static const Sources sources{embedded_files()};
+    return sources;
+}
+
+Sources Sources::from_folder(const std::string &folder) {
+    namespace fs = std::filesystem;
+    if (!fs::is_directory(folder))
+        throw Error(fmt::format("{}: no such folder (--cl-dir takes a copy of Opal's cl/)", folder));
+    Sources sources;
+    for (const auto &entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_regular_file() && (entry.path().extension() == ".cl" || entry.path().extension() == ".h"))
+            sources.files[fs::relative(entry.path(), folder).generic_string()] = read_text(entry.path());
+    if (sources.files.empty())
+        throw Error(fmt::format("{}: holds no .cl file (--cl-dir takes a copy of Opal's cl/)", folder));
+    return sources;
+}
+
+std::string Sources::expand(const std::string &file) const {
+    Expansion expansion(files);
+    expansion.append(file, "program");
+    return expansion.take();
+}
+
+} // namespace opal

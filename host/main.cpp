@@ -1,0 +1,92 @@
+// Picks the command. The only place that prints an error and exits.
+#include "base/error.h"
+#include "commands/commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <new>
+
+namespace opal {
+namespace {
+
+struct Command {
+    const char *name;
+    const char *help;
+    RunCommand (*setup)(CLI::App &app);
+};
+
+constexpr const char *hidden = ""; // no help: not listed
+
+const Command commands[] = {
+    {"devices", "List every OpenCL platform and device, and which one `render` takes", setup_devices},
+    {"probe-platform", hidden, setup_probe_platform},
+};
+
+bool is_command(const std::string &word) {
+    return std::any_of(std::begin(commands), std::end(commands), [&](const Command &c) { return word == c.name; });
+}
+
+[[noreturn]] void refuse_command(const std::string &word) {
+    std::vector<std::string> names;
+    for (const Command &command : commands)
+        if (command.help != hidden)
+            names.push_back(command.name);
+    const std::string what = word.empty() ? "no command given" : fmt::format("unknown command '{}'", word);
+    throw Error(fmt::format("{}; available: {}, or a scene's .xml file", what, fmt::join(names, ", ")));
+}
+
+// `opal SCENE.xml ...` is `opal render SCENE.xml ...`. Returned in reverse, as CLI11 wants it.
+std::vector<std::string> arguments(int argc, char **argv) {
+    std::vector<std::string> words(argv + 1, argv + argc);
+    const auto names_scene = [](const std::string &word) {
+        return std::filesystem::path(word).extension() == ".xml" || std::filesystem::is_regular_file(word);
+    };
+    if (!words.empty() && !is_command(words[0]) && std::any_of(words.begin(), words.end(), names_scene))
+        words.insert(words.begin(), "render");
+    else if (words.empty() || (!is_command(words[0]) && !words[0].starts_with('-')))
+        refuse_command(words.empty() ? std::string() : words[0]);
+    std::reverse(words.begin(), words.end());
+    return words;
+}
+
+int run(int argc, char **argv) {
+    CLI::App app("Opal " OPAL_VERSION ": a portable, physically based path tracer in OpenCL.\n"
+                 "`opal SCENE.xml` is `opal render SCENE.xml`.", "opal");
+    app.set_version_flag("--version", "opal " OPAL_VERSION);
+    app.set_help_flag("-h,--help", "Print this and exit");
+    app.require_subcommand(1);
+    app.option_defaults()->always_capture_default();
+
+    std::map<const CLI::App *, RunCommand> runs;
+    for (const Command &command : commands) {
+        CLI::App *sub = app.add_subcommand(command.name, command.help);
+        if (command.help == hidden)
+            sub->group("");
+        runs[sub] = command.setup(*sub);
+    }
+    try {
+        app.parse(arguments(argc, argv));
+    } catch (const CLI::Success &asked) { // --help, --version
+        return app.exit(asked);
+    } catch (const CLI::ParseError &error) {
+        throw Error(fmt::format("{} (opal --help, or opal COMMAND --help, lists what there is)", error.what()));
+    }
+    return runs.at(app.get_subcommands().front())();
+}
+
+} // namespace
+} // namespace opal
+
+int main(int argc, char **argv) {
+    try {
+        return opal::run(argc, argv);
+    } catch (const std::bad_alloc &) {
+        fmt::print(stderr, "error: out of memory on the host\n");
+    } catch (const std::exception &error) {
+        fmt::print(stderr, "error: {}\n", error.what());
+    }
+    return 1;
+}
