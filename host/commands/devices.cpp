@@ -40,8 +40,7 @@ int run_devices(const DevicesOptions &options) {
                    pick.info.name, pick.reason);
         return 0;
     }
-    fmt::print("{}
-", dump({{"devices", devices}, {"pick", pick.info.index}, {"reason", pick.reason}}, 2));
+    fmt::print("{}\n", dump({{"devices", devices}, {"pick", pick.info.index}, {"reason", pick.reason}}, 2));
     return 0;
 }
 
