@@ -1,0 +1,52 @@
+#include "device/program.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+namespace opal {
+
+namespace {
+
+// PoCL and most drivers report places by this name: "cl/kernels/render.cl:40:18: ...".
+std::string build_flags(const BuildOptions &options) {
+    return std::string("-cl-std=CL1.2 -Werror") + (options.math == MathMode::fast ? " -cl-fast-relaxed-math" : "");
+}
+
+std::string log_of(const cl::Program &program, const cl::Device &device) {
+    try {
+        return program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
+    } catch (const cl::Error &error) {
+        return "(the driver gives no log: " + cl_error_name(error.err()) + ")";
+    }
+}
+
+} // namespace
+
+std::string program_text(const Features &features, const BuildOptions &options, const Sources &sources) {
+    std::string text = fmt::format("#define LANES {}\n#define OPAL_DOUBLE {}\n#define OPAL_FAST {}\n", options.lanes,
+                                   int(options.double_precision), int(options.math == MathMode::fast));
+    for (const Feature &feature : features.list)
+        text += fmt::format("#define OPAL_HAS_{} {}\n", feature.name, int(feature.on));
+#define OPAL_AXIS_DEFINE(axis, help) text += fmt::format("#define OPAL_AXIS_" #axis " {}\n", features.axes[AXIS_##axis]);
+    OPAL_AXES(OPAL_AXIS_DEFINE)
+#undef OPAL_AXIS_DEFINE
+    return text + sources.expand(options.kernels);
+}
+
+cl::Program build_program(const Device &device, const std::string &text, const BuildOptions &options, double *seconds) {
+    const auto start = std::chrono::steady_clock::now();
+    cl::Program program = with_device(device.info, [&] { return cl::Program(device.context, text); });
+    try {
+        program.build({device.device}, build_flags(options).c_str());
+    } catch (const cl::Error &error) {
+        throw Error(fmt::format("{} (driver {}): the kernels do not build: {}; flags {}\n{}", device.info.name,
+                                device.info.driver, cl_error_name(error.err()), build_flags(options),
+                                log_of(program, device.device)));
+    }
+    if (seconds)
+        *seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return program;
+}
+
+} // namespace opal

@@ -1,0 +1,68 @@
+// Reading and expanding the kernels' sources, and the text that a program is built from.
+#include "base/error.h"
+#include "device/program.h"
+#include "support/scratch.h"
+
+#include <catch2/catch.hpp>
+
+using namespace opal;
+
+namespace {
+
+std::string message_of(const Sources &sources, const std::string &file) {
+    try {
+        sources.expand(file);
+    } catch (const Error &error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+} // namespace
+
+TEST_CASE("An include is expanded in place, once, between #line directives", "[sources]") {
+    const Sources sources{{
+        {"a.cl", "one\n#include \"b.h\"\ntwo\n  # include \"c.h\"\nthree"},
+        {"b.h", "#include \"c.h\"\nb\n"},
+        {"c.h", "c\n"},
+    }};
+    CHECK(sources.expand("a.cl") == "#line 1 \"cl/a.cl\"\none\n"
+                                    "#line 1 \"cl/b.h\"\n"
+                                    "#line 1 \"cl/c.h\"\nc\n"
+                                    "#line 2 \"cl/b.h\"\nb\n"
+                                    "#line 3 \"cl/a.cl\"\ntwo\n"
+                                    "\n" // c.h, a second time
+                                    "three\n");
+}
+
+TEST_CASE("A missing include names its place and what there is", "[sources]") {
+    const Sources sources{{{"a.cl", "\n#include \"b.h\"\n"}, {"b.h", "\n\n#include \"bsdfs/lits.h\"\n"}}};
+    CHECK(message_of(sources, "a.cl") == "cl/b.h:3: no file \"bsdfs/lits.h\" below cl/; available: a.cl, b.h");
+    CHECK(message_of(sources, "c.cl") == "program: no file \"c.cl\" below cl/; available: a.cl, b.h");
+}
+
+TEST_CASE("A folder of sources holds what the binary embeds", "[sources]") {
+    CHECK(Sources::from_folder(OPAL_SOURCE_DIR "/cl").files == Sources::embedded().files);
+    CHECK(Sources::embedded().files.count("shared/types.h") == 1);
+    CHECK_THROWS_AS(Sources::from_folder(OPAL_SOURCE_DIR "/no-such-folder"), Error);
+    const test::ScratchFolder empty;
+    CHECK_THROWS_WITH(Sources::from_folder(empty.path().string()), Catch::Contains("holds no .cl file"));
+}
+
+TEST_CASE("The program text defines width, precision, every feature and every axis, then the sources", "[sources]") {
+    const Sources sources{{{"kernels/k.cl", "kernel void k() {}\n"}}};
+    Features features;
+    features.list = {{"tree", true, ""}, {"wide_filter", false, ""}};
+    features.axes.fill(-1);
+    features.axes[AXIS_lighting] = CHOICE_lighting_mis;
+    BuildOptions options;
+    options.lanes = 8;
+    options.math = MathMode::fast;
+    options.kernels = "kernels/k.cl";
+    const std::string text = program_text(features, options, sources);
+    CHECK_THAT(text, Catch::StartsWith("#define LANES 8\n#define OPAL_DOUBLE 0\n#define OPAL_FAST 1\n"
+                                       "#define OPAL_HAS_tree 1\n#define OPAL_HAS_wide_filter 0\n"
+                                       "#define OPAL_AXIS_integrator -1\n#define OPAL_AXIS_lighting 2\n"));
+    CHECK_THAT(text, Catch::EndsWith("#define OPAL_AXIS_sampler -1\n#line 1 \"cl/kernels/k.cl\"\nkernel void k() {}\n"));
+    CHECK(program_text(features, options, sources) == text);
+}
