@@ -11,6 +11,7 @@ namespace opal {
 
 #define OPAL_NONE 0xffffffffu        // no emitter, no normal, no hit, no depth limit
 #define OPAL_LEAF 0x80000000u        // a child that is a triangle block
+#define OPAL_STACK 64                // entries that a walk of the tree never exceeds: every other child of every node on the way
 #define OPAL_TINY_TRIANGLES 48       // no tree up to this many triangles where lanes are many ...
 #define OPAL_TINY_VERTICES 96        // ... and up to this many distinct vertices
 

@@ -1,0 +1,34 @@
+// A binary bounding volume hierarchy by the surface area heuristic: what the 8-wide tree is collapsed from.
+#pragma once
+
+#include "flatten/box.h"
+#include "flatten/bvh.h"
+
+#include <memory>
+
+namespace opal {
+
+constexpr uint BLOCK_SIZE = 8; // triangles of a leaf at most
+
+struct Reference {
+    Box box;
+    uint triangle;
+};
+
+struct BinaryNode {
+    Box box;
+    uint first, count; // its range of the references
+    uint left;         // its right child is left + 1; 0: a leaf
+};
+
+struct BinaryTree {
+    std::unique_ptr<BinaryNode[]> nodes; // root first, parents before their children
+    uint node_count = 0;
+    std::vector<Reference> references;
+};
+
+// Costs are counted in blocks: ceil(n / BLOCK_SIZE) times the area. Leaves hold 1 to BLOCK_SIZE triangles; smaller sets are
+// split where that makes the areas of both parts together smaller. There is at least one triangle.
+BinaryTree build_binary_tree(const TriangleSoup &soup);
+
+} // namespace opal

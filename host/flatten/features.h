@@ -1,0 +1,13 @@
+// Decides what a scene's kernel is compiled with.
+#pragma once
+
+#include "flatten/flat_scene.h"
+
+namespace opal {
+
+constexpr int TINY_LANES = 4; // from this width on testing each of a few triangles beats a tree
+
+// Everything in `scene` but its features must be there. With strategy.specialise off, all features are on and all axes -1.
+Features find_features(const SceneDescription &description, const FlatScene &scene, int lanes);
+
+} // namespace opal

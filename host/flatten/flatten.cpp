@@ -1,0 +1,126 @@
+#include "flatten/emitters.h"
+#include "flatten/features.h"
+#include "flatten/geometry.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <map>
+#include <numbers>
+
+namespace opal {
+namespace {
+
+void store(Vec3 from, float (&to)[3]) {
+    for (int i = 0; i < 3; i++) to[i] = float(from[i]);
+}
+
+// Distances may go beyond float; the largest one is as far.
+float to_distance(double d) { return float(std::min(d, double(std::numeric_limits<float>::max()))); }
+
+// SCENE_FORMAT 3: direction = left (1 - 2 sx) tan_half_x + up (1 - 2 sy) tan_half_y + forward. The columns are those of toWorld
+// divided by the length of the third, so that a point at camera depth z lies z |column 2| times that vector away.
+void fill_camera(const Camera &camera, const Frame &frame, Settings &settings) {
+    const auto &rows = camera.to_world.rows;
+    const auto column = [&rows](int i) { return Vec3{rows[0][i], rows[1][i], rows[2][i]}; };
+    const double depth = length(column(2));
+    store((camera.to_world.point({}) - frame.center) * frame.scale, settings.camera_origin);
+    store(column(0) * (1 / depth), settings.camera_left);
+    store(column(1) * (1 / depth), settings.camera_up);
+    store(column(2) * (1 / depth), settings.camera_forward);
+    const double tangent = std::tan(camera.fov * (std::numbers::pi / 360));
+    settings.tan_half_x = float(tangent);
+    settings.tan_half_y = float(tangent * camera.height / camera.width);
+    settings.near_clip = to_distance(camera.near_clip * depth * frame.scale);
+    settings.far_clip = to_distance(camera.far_clip * depth * frame.scale);
+    settings.width = uint(camera.width);
+    settings.height = uint(camera.height);
+    settings.filter = camera.filter.kind;
+    settings.filter_radius = float(camera.filter.radius);
+    settings.filter_stddev = float(camera.filter.stddev);
+    settings.filter_b = float(camera.filter.b);
+    settings.filter_c = float(camera.filter.c);
+}
+
+void fill_strategy(const SceneDescription &description, const Frame &frame, Settings &settings) {
+    settings.spp = description.spp;
+    settings.max_depth = description.strategy.max_depth;
+    settings.rr_depth = description.strategy.rr_depth;
+    settings.rr_prob = float(description.strategy.rr_prob);
+    settings.normals_signed = description.normals_signed;
+    store((description.simple_light.position - frame.center) * frame.scale, settings.light_position);
+    for (int i = 0; i < 3; i++)
+        settings.light_energy[i] = float(description.simple_light.energy[i] * frame.scale * frame.scale);
+    std::copy(description.strategy.choices.begin(), description.strategy.choices.end(), settings.choices);
+}
+
+// --hemisphere is decided here: what the device reads is in the materials.
+BsdfRecord with_hemisphere(BsdfRecord record, int hemisphere) {
+    if (record.kind == BSDF_diffuse && hemisphere != CHOICE_hemisphere_material)
+        record.u.diffuse.use_cosine = hemisphere == CHOICE_hemisphere_cosine;
+    return record;
+}
+
+void gather_bsdfs(const SceneDescription &description, FlatScene &scene) {
+    std::map<std::string, uint> known; // by their bytes
+    for (const Mesh &mesh : description.meshes) {
+        const BsdfRecord record = with_hemisphere(mesh.bsdf.record, description.strategy[AXIS_hemisphere]);
+        const std::string bytes(reinterpret_cast<const char *>(&record), sizeof record);
+        const auto [found, is_new] = known.try_emplace(bytes, uint(scene.bsdfs.size()));
+        if (is_new) scene.bsdfs.push_back(record);
+        scene.meshes.push_back({found->second, OPAL_NONE});
+    }
+}
+
+// Fills the tables of distinct vertices, if there are few enough.
+bool gather_tiny(const TriangleSoup &soup, FlatScene &scene) {
+    if (soup.corners.size() > OPAL_TINY_TRIANGLES) return false;
+    std::map<std::array<float, 3>, uint> known;
+    std::vector<uint> numbers; // of each corner's vertex
+    for (const auto &corners : soup.corners)
+        for (uint vertex : corners) {
+            numbers.push_back(known.try_emplace(soup.vertices[vertex], uint(known.size())).first->second);
+            if (known.size() > OPAL_TINY_VERTICES) return false;
+        }
+    scene.tiny_vertices.resize(3 * known.size());
+    for (const auto &[position, number] : known) std::copy(position.begin(), position.end(), &scene.tiny_vertices[3 * number]);
+    for (uint id = 0; id < soup.corners.size(); id++)
+        scene.tiny_triangles.push_back({{numbers[3 * id], numbers[3 * id + 1], numbers[3 * id + 2]}, id}); // as pack_blocks has them
+    scene.settings.tiny_triangle_count = uint(scene.tiny_triangles.size());
+    scene.settings.tiny_vertex_count = uint(known.size());
+    return true;
+}
+
+void build_acceleration(const TriangleSoup &soup, bool may_be_tiny, FlatScene &scene) {
+    if (may_be_tiny && gather_tiny(soup, scene)) {
+        scene.blocks = pack_blocks(soup);
+        return;
+    }
+    const auto start = std::chrono::steady_clock::now();
+    Bvh bvh = build_bvh(soup);
+    scene.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    scene.sah_cost = sah_cost(bvh);
+    scene.nodes = std::move(bvh.nodes);
+    scene.blocks = std::move(bvh.blocks);
+    scene.settings.root = bvh.root;
+}
+
+} // namespace
+
+FlatScene flatten(const SceneDescription &description, int lanes) {
+    FlatScene scene;
+    const Frame frame = find_frame(description);
+    scene.center = frame.center;
+    scene.scale = frame.scale;
+    fill_camera(description.camera, frame, scene.settings);
+    fill_strategy(description, frame, scene.settings);
+    gather_bsdfs(description, scene);
+    const TriangleSoup soup = gather_triangles(description, frame, scene);
+    build_acceleration(soup, lanes >= TINY_LANES && description.strategy.specialise, scene);
+    gather_emitters(description, frame, soup, scene);
+    scene.settings.emitter_count = uint(scene.emitters.size());
+    scene.features = find_features(description, scene, lanes);
+    return scene;
+}
+
+} // namespace opal

@@ -1,0 +1,27 @@
+// From meshes in world space and double precision to triangles of floats around the origin.
+#pragma once
+
+#include "flatten/bvh.h"
+#include "flatten/flat_scene.h"
+
+namespace opal {
+
+// The map from world positions to flattened ones; distances grow by `scale`, areas by its square.
+struct Frame {
+    Vec3 center;
+    double scale = 1;
+    std::array<float, 3> operator()(Vec3 world) const;
+};
+
+// Centre of the box around all triangles and point lights, and the power of two that brings half its longest side into
+// (0.5, 1]. A scene of nothing, or of one point, has scale 1.
+Frame find_frame(const SceneDescription &scene);
+
+// Fills scene.triangles and scene.normals, and returns the positions. Triangles that the rounding to float leaves without a
+// normal are left out, with a warning that counts them.
+TriangleSoup gather_triangles(const SceneDescription &description, const Frame &frame, FlatScene &scene);
+
+// (b - a) x (c - a), exact but for the rounding of double; its length is twice the area.
+Vec3 normal_of(const std::array<float, 3> &a, const std::array<float, 3> &b, const std::array<float, 3> &c);
+
+} // namespace opal
