@@ -24,11 +24,16 @@ struct Image {
 
 Image read_exr(const std::filesystem::path &file);                    // every float or half channel
 void write_exr(const Image &image, const std::filesystem::path &file); // float32, beside and then renamed
-// R, G, B with the exact sRGB curve, rounded to 8 bits; what is not finite becomes magenta.
+// R, G, B with the exact sRGB curve (IEC 61966-2-1), clamped and rounded to 8 bits; what is not finite becomes magenta.
 void write_png(const Image &image, const std::filesystem::path &file);
+double srgb_encode(double linear); // linear 0 to 1 -> display value 0 to 1, clamped
+
+// Throws Error unless write_safely could put a file there: asked before rendering, not after.
+void check_writable(const std::filesystem::path &file);
 
 // Writes by way of a temporary file beside `file`, renamed when `write` has returned: nothing is ever half-written.
 // Throws Error with the reason of the system ("No space left on device") and removes the temporary file.
+// A link's target is written, not the link; what is no regular file (/dev/stdout) is written as it is.
 void write_safely(const std::filesystem::path &file, const std::string &bytes);
 
 } // namespace opal

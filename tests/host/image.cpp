@@ -1,0 +1,184 @@
+// Images and their files: what is written is what is read, and what cannot be written is said, with nothing left behind.
+#include "base/error.h"
+#include "image/metrics.h"
+#include "support/scratch.h"
+
+#include <catch2/catch.hpp>
+#include <png.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <sys/mount.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+using namespace opal;
+using opal::test::ScratchFolder;
+
+namespace {
+
+Image gradient(int width, int height) {
+    Image image;
+    image.width = width;
+    image.height = height;
+    for (const char *name : {"R", "G", "B", "variance.R"}) {
+        Layer layer{name, {}};
+        for (int i = 0; i < width * height; ++i)
+            layer.values.push_back(static_cast<float>(image.layers.size()) + 0.1f * static_cast<float>(i));
+        image.layers.push_back(layer);
+    }
+    return image;
+}
+
+Image grey(const std::vector<float> &values) {
+    Image image;
+    image.width = static_cast<int>(values.size());
+    image.height = 1;
+    image.layers = {{"R", values}, {"G", values}, {"B", values}};
+    return image;
+}
+
+size_t files_in(const std::filesystem::path &folder) {
+    const std::filesystem::directory_iterator begin(folder);
+    return static_cast<size_t>(std::distance(begin, std::filesystem::directory_iterator()));
+}
+
+std::vector<png_byte> read_png(const std::filesystem::path &file, png_image &header) {
+    std::memset(&header, 0, sizeof header);
+    header.version = PNG_IMAGE_VERSION;
+    REQUIRE(png_image_begin_read_from_file(&header, file.c_str()));
+    CHECK(header.format == PNG_FORMAT_RGB);
+    std::vector<png_byte> bytes(PNG_IMAGE_SIZE(header));
+    REQUIRE(png_image_finish_read(&header, nullptr, bytes.data(), 0, nullptr));
+    return bytes;
+}
+
+} // namespace
+
+TEST_CASE("An EXR keeps every bit of every layer and its metadata", "[image]") {
+    const ScratchFolder folder;
+    Image image = gradient(7, 3);
+    image.layers[0].values[0] = std::numeric_limits<float>::infinity();
+    image.layers[1].values[1] = std::numeric_limits<float>::denorm_min();
+    image.layers[2].values[2] = std::nanf("");
+    image.metadata = {{"scene", "a b.xml"}, {"strategy", "{\"mis\": \"power\"}"}, {"empty", ""}};
+    write_exr(image, folder / "image.exr");
+    const Image read = read_exr(folder / "image.exr");
+    CHECK(read.width == 7);
+    CHECK(read.height == 3);
+    REQUIRE(read.layers.size() == image.layers.size());
+    for (const Layer &layer : image.layers)
+        CHECK(std::memcmp(read.get(layer.name).values.data(), layer.values.data(), layer.values.size() * sizeof(float)) == 0);
+    for (const auto &[name, text] : image.metadata)
+        CHECK(read.metadata.at(name) == text);
+    CHECK(files_in(folder.path()) == 1);
+}
+
+TEST_CASE("A file that is no EXR, or only a part of one, is refused by name", "[image]") {
+    const ScratchFolder folder;
+    CHECK_THROWS_WITH(read_exr(folder / "none.exr"), Catch::Contains("none.exr"));
+    folder.write("text.exr", "this is a text");
+    CHECK_THROWS_WITH(read_exr(folder / "text.exr"), Catch::Contains("text.exr: cannot be read as OpenEXR"));
+    write_exr(gradient(64, 64), folder / "whole.exr");
+    const std::string bytes = test::read_text(folder / "whole.exr");
+    folder.write("half.exr", bytes.substr(0, bytes.size() / 2));
+    CHECK_THROWS_AS(read_exr(folder / "half.exr"), Error);
+}
+
+TEST_CASE("A missing layer is named with those that there are", "[image]") {
+    CHECK_THROWS_WITH(gradient(1, 1).get("albedo"), "the image has no layer 'albedo'; available: R, G, B, variance.R");
+}
+
+TEST_CASE("A PNG has the exact sRGB curve, rounded, and magenta for what is not finite", "[image]") {
+    const ScratchFolder folder;
+    const float infinity = std::numeric_limits<float>::infinity();
+    // 0.5 -> 0.735357 * 255 = 187.5 ..., 0.0031308 -> 0.04045 * 255 = 10.3, 0.2158605 is display value 0.5 -> 127.5
+    write_png(grey({-1, 0, 0.0031308f, 0.18f, 0.5f, 1, 7, infinity}), folder / "image.png");
+    png_image header;
+    const std::vector<png_byte> bytes = read_png(folder / "image.png", header);
+    REQUIRE(header.width == 8);
+    std::vector<int> red, green;
+    for (size_t i = 0; i < 8; ++i) {
+        red.push_back(bytes[3 * i]);
+        green.push_back(bytes[3 * i + 1]);
+    }
+    CHECK(red == std::vector<int>{0, 0, 10, 118, 188, 255, 255, 255});
+    CHECK(green == std::vector<int>{0, 0, 10, 118, 188, 255, 255, 0});
+}
+
+TEST_CASE("The sRGB curve joins its two pieces", "[image]") {
+    CHECK(srgb_encode(0.0031308) == Approx(0.0404499).epsilon(1e-5));
+    CHECK(srgb_encode(0.00313081) == Approx(0.0404499).epsilon(1e-5));
+    CHECK(srgb_encode(0.21404114) == Approx(0.5).epsilon(1e-7));
+}
+
+TEST_CASE("What cannot be written is said before rendering, and nothing is left behind", "[image]") {
+    const ScratchFolder folder;
+    CHECK_THROWS_WITH(check_writable(folder / "none/a.exr"), Catch::Contains("there is no folder " + (folder / "none").string()));
+    folder.write("file", "");
+    CHECK_THROWS_WITH(check_writable(folder / "file/a.exr"), Catch::Contains("is not a folder"));
+    CHECK_THROWS_WITH(check_writable(folder.path()), Catch::Contains("is a folder"));
+    CHECK_NOTHROW(check_writable(folder / "a.exr"));
+    CHECK(files_in(folder.path()) == 1);
+    if (geteuid() == 0) {
+        WARN("root may write everywhere: a read-only folder is not tried");
+        return;
+    }
+    chmod(folder.path().c_str(), 0500);
+    CHECK_THROWS_WITH(check_writable(folder / "a.exr"), Catch::Contains("Permission denied"));
+    chmod(folder.path().c_str(), 0700);
+}
+
+TEST_CASE("A full device is noticed", "[image]") {
+    CHECK_THROWS_WITH(write_safely("/dev/full", "text"), "/dev/full: cannot be written: No space left on device");
+}
+
+TEST_CASE("A full disk leaves the old file and no other", "[image]") {
+    const ScratchFolder folder;
+    if (mount("tmpfs", folder.path().c_str(), "tmpfs", 0, "size=64k") != 0) {
+        WARN("a small file system cannot be mounted here: a full disk is not tried");
+        return;
+    }
+    write_safely(folder / "image.exr", "old");
+    Image noise = gradient(200, 200);
+    for (size_t i = 0; i < noise.layers[0].values.size(); ++i) // does not compress
+        noise.layers[0].values[i] = std::sin(1e6f * static_cast<float>(i * i));
+    CHECK_THROWS_WITH(write_exr(noise, folder / "image.exr"), Catch::Contains("image.exr: cannot be written: No space left on device"));
+    CHECK(test::read_text(folder / "image.exr") == "old");
+    CHECK(files_in(folder.path()) == 1);
+    umount(folder.path().c_str());
+}
+
+TEST_CASE("A link is written through", "[image]") {
+    const ScratchFolder folder;
+    folder.write("target", "old");
+    std::filesystem::create_symlink(folder / "target", folder / "link");
+    write_safely(folder / "link", "new");
+    CHECK(std::filesystem::is_symlink(folder / "link"));
+    CHECK(test::read_text(folder / "target") == "new");
+}
+
+TEST_CASE("Metrics of images worked out by hand", "[image]") {
+    const Image reference = grey({1, 3}), image = grey({2, 3});
+    const Metrics m = compare_images(image, reference);
+    CHECK(m.mse == Approx(0.5));
+    CHECK(m.rmse == Approx(std::sqrt(0.5)));
+    CHECK(m.rel_mse_floor == Approx(0.0004)); // (1 % of 2)^2
+    CHECK(m.rel_mse == Approx(0.5 / 1.0004));
+    CHECK(m.mae == Approx(0.5));
+    CHECK(m.smape == Approx(0.5 * 2.0 / 3));
+    CHECK(m.mean_difference == Approx(0.5));
+    CHECK(m.max_difference == Approx(1));
+    CHECK(m.max_x == 0);
+    CHECK(std::isinf(m.psnr)); // both are white when tone-mapped
+    CHECK(compare_images(grey({0.21404114f}), grey({0})).psnr == Approx(-20 * std::log10(0.5)).epsilon(1e-6));
+}
+
+TEST_CASE("Pixels that are not finite are counted and left out", "[image]") {
+    const Metrics m = compare_images(grey({std::nanf(""), 2}), grey({1, 1}));
+    CHECK(m.invalid == 1);
+    CHECK(m.mse == Approx(1));
+    CHECK_THROWS_WITH(compare_images(grey({1}), grey({1, 2})), Catch::Contains("1 x 1 and 2 x 1"));
+    CHECK_THROWS_AS(compare_images(grey({std::nanf("")}), grey({1})), Error);
+}
