@@ -14,7 +14,7 @@
 #define OPAL_BSDF_ENUM(name) BSDF_##name,
 enum { OPAL_BSDFS(OPAL_BSDF_ENUM) BSDF_COUNT };
 
-#ifndef __OPENCL_VERSION__
+#ifdef __cplusplus
 namespace opal {
 #endif
 
@@ -56,7 +56,7 @@ typedef struct {
 } BsdfRecord;
 OPAL_SIZE_CHECK(BsdfRecord, 64);
 
-#ifndef __OPENCL_VERSION__
+#ifdef __cplusplus
 }
 #endif
 

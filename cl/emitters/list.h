@@ -12,7 +12,7 @@
 #define OPAL_EMITTER_ENUM(name) EMITTER_##name,
 enum { OPAL_EMITTERS(OPAL_EMITTER_ENUM) EMITTER_COUNT };
 
-#ifndef __OPENCL_VERSION__
+#ifdef __cplusplus
 namespace opal {
 #endif
 
@@ -40,7 +40,7 @@ typedef struct {
 } LightTriangle;
 OPAL_SIZE_CHECK(LightTriangle, 16);
 
-#ifndef __OPENCL_VERSION__
+#ifdef __cplusplus
 }
 #endif
 

@@ -5,7 +5,7 @@
 #ifndef OPAL_GLUE_H
 #define OPAL_GLUE_H
 
-#ifdef __OPENCL_VERSION__
+#ifndef __cplusplus
 #define OPAL_SIZE_CHECK(T, bytes) typedef char T##_size_check[sizeof(T) == (bytes) ? 1 : -1]
 #else
 namespace opal {

@@ -5,7 +5,7 @@
 #include "shared/glue.h"
 #include "shared/strategy.h"
 
-#ifndef __OPENCL_VERSION__
+#ifdef __cplusplus
 namespace opal {
 #endif
 
@@ -82,7 +82,7 @@ typedef struct {
 } Settings;
 OPAL_SIZE_CHECK(Settings, 192);
 
-#ifndef __OPENCL_VERSION__
+#ifdef __cplusplus
 }
 #endif
 

@@ -1,0 +1,28 @@
+// dielectric: a smooth boundary between two transparent media, two-sided, discrete.
+//   <bsdf type="dielectric"> <float name="intIOR" value="1.5046"/> <float name="extIOR" value="1.000277"/> </bsdf>
+//   intIOR   index of refraction on the side the normal points away from (1.5046, BK7 glass)
+//   extIOR   index of refraction on the side the normal points to (1.000277, air)
+// Reflects with the Fresnel reflectance as probability, else refracts by Snell's law. Refraction scales radiance by
+// (1/eta)^2, eta = index over index, far side over near side (Veach 1997, section 5.2); eta is reported with the sample.
+typedef struct { real int_ior, ext_ior; } dielectric_bsdf;
+
+dielectric_bsdf dielectric_at(const Scene *scene, uints id) {
+    dielectric_bsdf b = {GATHER(real, scene->bsdfs, id, .u.dielectric.int_ior), GATHER(real, scene->bsdfs, id, .u.dielectric.ext_ior)};
+    return b;
+}
+
+v3 dielectric_eval(dielectric_bsdf b, v3 wi, v3 wo) { return v3_all((real)(0)); }
+
+real dielectric_pdf(dielectric_bsdf b, v3 wi, v3 wo) { return (real)(0); }
+
+BsdfSample dielectric_sample(dielectric_bsdf b, v3 wi, v2 u, real lobe) {
+    mask outside = wi.z > 0;
+    real near = outside ? b.ext_ior : b.int_ior, far = outside ? b.int_ior : b.ext_ior;
+    real eta = far / near, sin2 = sin2_theta(wi);
+    mask reflects = lobe < fresnel_dielectric(fabs(wi.z), sin2, near, far);
+    real far_cosine = refracted_cosine(sin2, eta);
+    v3 refracted = v3_of(-wi.x / eta, -wi.y / eta, outside ? -far_cosine : far_cosine);
+    real weight = reflects ? (real)(1) : 1 / square(eta);
+    return bsdf_sample_of(v3_pick(reflects, reflect_z(wi), refracted), v3_all(wi.z != 0 ? weight : (real)(0)),
+                          reflects ? (real)(1) : eta, ALL_LANES);
+}

@@ -1,0 +1,45 @@
+// phong: the modified Phong model, one-sided (Lafortune and Willems 1994).
+//   <bsdf type="phong"> <color name="kd" value="0.5"/> <color name="ks" value="0.5"/> <float name="pd" value="0.5"/> <float name="n" value="20"/> </bsdf>
+//   kd, ks   diffuse and specular reflectance (0.5, 0.5)
+//   pd       share of the diffuse part, and the probability to draw from it (0.5)
+//   n        exponent of the lobe (20)
+// f = kd pd / pi + ks (1 - pd) (n + 2)/(2 pi) cos^n a, with a between wo and the mirrored wi.
+typedef struct { v3 kd, ks; real pd, n; } phong_bsdf;
+
+phong_bsdf phong_at(const Scene *scene, uints id) {
+    phong_bsdf b = {GATHER_V3(scene->bsdfs, id, .u.phong.kd), GATHER_V3(scene->bsdfs, id, .u.phong.ks),
+                    GATHER(real, scene->bsdfs, id, .u.phong.pd), GATHER(real, scene->bsdfs, id, .u.phong.n)};
+    return b;
+}
+
+// Density of the lobe alone at wo.
+real phong_lobe(phong_bsdf b, v3 wi, v3 wo) {
+    return square_to_phong_lobe_pdf(to_local(frame_of(reflect_z(wi)), wo), b.n);
+}
+
+v3 phong_eval(phong_bsdf b, v3 wi, v3 wo) {
+    mask above = wi.z > 0 & wo.z > 0;
+    real specular = (1 - b.pd) * (b.n + 2) / (b.n + 1) * phong_lobe(b, wi, wo);
+    v3 f = v3_add(v3_scale(b.kd, b.pd * INV_PI), v3_scale(b.ks, specular));
+    return v3_pick(above, f, v3_all((real)(0)));
+}
+
+// The mixture that sample draws from, also below the surface, where the sample is kept with weight 0.
+real phong_pdf(phong_bsdf b, v3 wi, v3 wo) {
+    real density = b.pd * square_to_cosine_hemisphere_pdf(wo) + (1 - b.pd) * phong_lobe(b, wi, wo);
+    return wi.z > 0 ? density : (real)(0);
+}
+
+BsdfSample phong_sample(phong_bsdf b, v3 wi, v2 u, real lobe) {
+    mask diffuse = lobe < b.pd;
+    Frame mirrored = frame_of(reflect_z(wi));
+    v3 wo = v3_pick(diffuse, square_to_cosine_hemisphere(u), to_world(mirrored, square_to_phong_lobe(u, b.n)));
+    // f cos / pdf with the larger of the two densities divided out: either alone may overflow or vanish.
+    real base = square_to_cosine_hemisphere_pdf(wo), peak = phong_lobe(b, wi, wo);
+    real larger = real_max(base, peak);
+    real of_base = base / larger, of_peak = peak / larger;
+    real density = b.pd * of_base + (1 - b.pd) * of_peak;
+    v3 f_cos = v3_add(v3_scale(b.kd, b.pd * of_base), v3_scale(b.ks, (1 - b.pd) * (b.n + 2) / (b.n + 1) * of_peak * wo.z));
+    mask kept = wi.z > 0 & wo.z > 0 & density > 0;
+    return bsdf_sample_of(wo, v3_pick(kept, v3_scale(f_cos, 1 / density), v3_all((real)(0))), (real)(1), NO_LANES);
+}

@@ -1,0 +1,247 @@
+// bvh: closest and any hit of each lane. With a tree each lane walks it alone, with the eight children or triangles of a
+// node in one vector (DESIGN: packets of lanes were slower). A tiny scene does without: each triangle against all lanes.
+#define STACK_SIZE 64 // flatten bounds the tree's depth so that this is never exceeded
+
+// The axis of the largest component of d, and with it the shear of triangle.cl.
+typedef struct {
+    mask x, y;                      // kz = 0, kz = 1; else 2
+    real shear_x, shear_y, scale_z; // d[kx] / d[kz], d[ky] / d[kz], 1 / d[kz], with kx = kz + 1, ky = kz + 2 mod 3
+} Shear;
+
+Shear shear_of(v3 d) {
+    v3 a = v3_abs(d);
+    Shear s;
+    s.x = a.x > a.y & a.x > a.z;
+    s.y = (a.y > a.z) & (a.y >= a.x);
+    s.scale_z = 1 / (s.x ? d.x : s.y ? d.y : d.z);
+    s.shear_x = (s.x ? d.y : s.y ? d.z : d.x) * s.scale_z;
+    s.shear_y = (s.x ? d.z : s.y ? d.x : d.y) * s.scale_z;
+    return s;
+}
+
+// 1/d, finite also for zeros, whose sign is kept: a box test then never meets 0 * inf.
+real safe_inverse(real d) { return 1 / (fabs(d) < R(1e-30) ? copysign((real)(R(1e-30)), d) : d); }
+
+// All lanes' rays, laid out so that a loop can read one lane after the other.
+typedef struct {
+    real1 o[3][LANES], inverse[3][LANES], shear_x[LANES], shear_y[LANES], scale_z[LANES], tmin[LANES], tmax[LANES];
+    int kz[LANES], live[LANES];
+} LaneRays;
+
+void store_rays(LaneRays *rays, Ray ray, mask live) {
+    Shear s = shear_of(ray.d);
+    STORE(ray.o.x, rays->o[0]); STORE(ray.o.y, rays->o[1]); STORE(ray.o.z, rays->o[2]);
+    STORE(safe_inverse(ray.d.x), rays->inverse[0]);
+    STORE(safe_inverse(ray.d.y), rays->inverse[1]);
+    STORE(safe_inverse(ray.d.z), rays->inverse[2]);
+    STORE(s.shear_x, rays->shear_x); STORE(s.shear_y, rays->shear_y); STORE(s.scale_z, rays->scale_z);
+    STORE(ray.tmin, rays->tmin); STORE(ray.tmax, rays->tmax);
+    ints kz = to_ints(s.x) ? (ints)(0) : to_ints(s.y) ? (ints)(1) : (ints)(2);
+    STORE(kz, rays->kz);
+    STORE(to_ints(live), rays->live);
+}
+
+LaneRay load_ray(const LaneRays *rays, int lane) {
+    LaneRay r;
+    for (int axis = 0; axis < 3; axis++) {
+        r.o[axis] = rays->o[axis][lane];
+        r.inverse[axis] = rays->inverse[axis][lane];
+    }
+    r.shear_x = rays->shear_x[lane]; r.shear_y = rays->shear_y[lane]; r.scale_z = rays->scale_z[lane];
+    r.tmin = rays->tmin[lane]; r.tmax = rays->tmax[lane];
+    r.kz = rays->kz[lane];
+    r.kx = r.kz == 2 ? 0 : r.kz + 1;
+    r.ky = r.kx == 2 ? 0 : r.kx + 1;
+    return r;
+}
+
+// The children whose boxes the ray meets, one bit each, and where it enters them. (plane - o) / d loses nothing that
+// matters, and the far side is widened by its error bound, so that no box misses a triangle inside it (Ize 2013).
+uint intersect_children(global const BvhNode *node, const LaneRay *ray, real8 *entry) {
+    global const float *lo = node->lo[0], *hi = node->hi[0];
+    int x = ray->inverse[0] < 0, y = ray->inverse[1] < 0, z = ray->inverse[2] < 0;
+    real8 near_x = (load8(x ? hi : lo) - ray->o[0]) * ray->inverse[0];
+    real8 near_y = (load8((y ? hi : lo) + 8) - ray->o[1]) * ray->inverse[1];
+    real8 near_z = (load8((z ? hi : lo) + 16) - ray->o[2]) * ray->inverse[2];
+    real8 far_x = (load8(x ? lo : hi) - ray->o[0]) * ray->inverse[0];
+    real8 far_y = (load8((y ? lo : hi) + 8) - ray->o[1]) * ray->inverse[1];
+    real8 far_z = (load8((z ? lo : hi) + 16) - ray->o[2]) * ray->inverse[2];
+    *entry = real8_max(real8_max(near_x, near_y), real8_max(near_z, (real8)(ray->tmin)));
+    real8 leave = real8_min(real8_min(far_x, far_y), far_z) * (1 + 8 * EPSILON);
+    return bits_of(*entry <= real8_min(leave, (real8)(ray->tmax)));
+}
+
+// Nearest hit of one ray; slot = OPAL_NONE where there is none.
+void walk_closest(const Scene *scene, LaneRay ray, real1 *t_out, real1 *u_out, real1 *v_out, uint *slot_out) {
+    uint stack[STACK_SIZE];
+    real1 entries[STACK_SIZE];
+    int top = 0;
+    uint child = scene->settings->root;
+    *slot_out = OPAL_NONE;
+    for (;;) {
+        if (child & OPAL_LEAF) {
+            uint block = child & ~OPAL_LEAF;
+            real8 t, u, v;
+            uint hits = intersect_block(scene->blocks + block, &ray, &t, &u, &v);
+            if (hits) {
+                real1 ts[8], us[8], vs[8];
+                vstore8(t, 0, ts); vstore8(u, 0, us); vstore8(v, 0, vs);
+                while (hits) {
+                    uint i = lowest_bit(hits);
+                    hits &= hits - 1;
+                    if (ts[i] < ray.tmax) {
+                        ray.tmax = ts[i];
+                        *u_out = us[i]; *v_out = vs[i];
+                        *slot_out = block * 8 + i;
+                    }
+                }
+            }
+        } else {
+            // Push the children that are met, the nearest last.
+            global const BvhNode *node = scene->nodes + child;
+            real8 entry;
+            uint met = intersect_children(node, &ray, &entry);
+            real1 es[8];
+            vstore8(entry, 0, es);
+            int bottom = top;
+            while (met) {
+                uint i = lowest_bit(met);
+                met &= met - 1;
+                int place = top++;
+                while (place > bottom && entries[place - 1] < es[i]) {
+                    entries[place] = entries[place - 1];
+                    stack[place] = stack[place - 1];
+                    place--;
+                }
+                entries[place] = es[i];
+                stack[place] = node->child[i];
+            }
+        }
+        do {
+            if (top == 0) {
+                *t_out = ray.tmax;
+                return;
+            }
+            child = stack[--top];
+        } while (entries[top] >= ray.tmax);
+    }
+}
+
+// Does anything lie between tmin and tmax of one ray?
+int walk_any(const Scene *scene, LaneRay ray) {
+    uint stack[STACK_SIZE];
+    int top = 0;
+    uint child = scene->settings->root;
+    for (;;) {
+        if (child & OPAL_LEAF) {
+            real8 t, u, v;
+            if (intersect_block(scene->blocks + (child & ~OPAL_LEAF), &ray, &t, &u, &v)) return 1;
+        } else {
+            global const BvhNode *node = scene->nodes + child;
+            real8 entry;
+            uint met = intersect_children(node, &ray, &entry);
+            while (met) {
+                stack[top++] = node->child[lowest_bit(met)];
+                met &= met - 1;
+            }
+        }
+        if (top == 0) return 0;
+        child = stack[--top];
+    }
+}
+
+// Without a tree: the vertices as all lanes see them, moved and sheared once for all triangles that share them.
+typedef struct { real x[OPAL_TINY_VERTICES], y[OPAL_TINY_VERTICES], z[OPAL_TINY_VERTICES]; } TinyView;
+
+void view_vertices(const Scene *scene, Ray ray, TinyView *view) {
+    Shear s = shear_of(ray.d);
+    // x = v[kx] - shear_x v[kz] - (the same of o), with the axes of each lane as vectors; likewise y, and z = v[kz] - o[kz].
+    real zero = 0, one = 1;
+    v3 px = v3_of(s.x ? -s.shear_x : s.y ? zero : one, s.x ? one : s.y ? -s.shear_x : zero, s.x ? zero : s.y ? one : -s.shear_x);
+    v3 py = v3_of(s.x ? -s.shear_y : s.y ? one : zero, s.x ? zero : s.y ? -s.shear_y : one, s.x ? one : s.y ? zero : -s.shear_y);
+    v3 pz = v3_scale(v3_of(s.x ? one : zero, s.y ? one : zero, s.x | s.y ? zero : one), s.scale_z);
+    real ox = v3_dot(px, ray.o), oy = v3_dot(py, ray.o), oz = v3_dot(pz, ray.o);
+    for (uint i = 0; i < scene->settings->tiny_vertex_count; i++) {
+        real1 x = scene->tiny_vertices[3 * i], y = scene->tiny_vertices[3 * i + 1], z = scene->tiny_vertices[3 * i + 2];
+        view->x[i] = mad(px.x, (real)(x), mad(px.y, (real)(y), mad(px.z, (real)(z), -ox)));
+        view->y[i] = mad(py.x, (real)(x), mad(py.y, (real)(y), mad(py.z, (real)(z), -oy)));
+        view->z[i] = mad(pz.x, (real)(x), mad(pz.y, (real)(y), mad(pz.z, (real)(z), -oz)));
+    }
+}
+
+// Triangle i in that view: inside, and the signed sums that give t = distance / determinant, u = b / determinant, ...
+typedef struct { real b, c, determinant, distance; mask inside; } TinyTest;
+
+TinyTest tiny_test(const TinyView *view, const uint *corner) {
+    uint i = corner[0], j = corner[1], k = corner[2];
+    real a = lanes_edge(view->x[k], view->y[k], view->x[j], view->y[j]);
+    real b = lanes_edge(view->x[i], view->y[i], view->x[k], view->y[k]);
+    real c = lanes_edge(view->x[j], view->y[j], view->x[i], view->y[i]);
+    mask inside = real_min(a, real_min(b, c)) >= 0 | real_max(a, real_max(b, c)) <= 0;
+    real determinant = a + b + c;
+    // One sign for both: then ratios compare by products, without a division a triangle.
+    real sign = copysign((real)(1), determinant);
+    TinyTest test = {b, c, fabs(determinant), sign * mad(a, view->z[i], mad(b, view->z[j], c * view->z[k])), inside};
+    return test;
+}
+
+Hit tiny_closest(const Scene *scene, Ray ray, mask live) {
+    TinyView view;
+    view_vertices(scene, ray, &view);
+    real distance = ray.tmax, determinant = 1, b = 0, c = 0;
+    uints slot = (uints)(OPAL_NONE);
+    for (uint i = 0; i < scene->settings->tiny_triangle_count; i++) {
+        TinyTriangle triangle = scene->tiny_triangles[i];
+        TinyTest test = tiny_test(&view, triangle.corner);
+        mask nearer = test.inside & (test.distance > ray.tmin * test.determinant) &
+                      (test.distance * determinant < distance * test.determinant);
+        distance = nearer ? test.distance : distance;
+        determinant = nearer ? test.determinant : determinant;
+        b = nearer ? test.b : b;
+        c = nearer ? test.c : c;
+        slot = uints_pick(nearer, (uints)(triangle.slot), slot);
+    }
+    real reciprocal = 1 / determinant;
+    Hit hit = {distance * reciprocal, fabs(b) * reciprocal, fabs(c) * reciprocal, slot};
+    return hit;
+}
+
+mask tiny_any(const Scene *scene, Ray ray, mask live) {
+    TinyView view;
+    view_vertices(scene, ray, &view);
+    mask blocked = !live;
+    for (uint i = 0; i < scene->settings->tiny_triangle_count; i++) {
+        TinyTriangle triangle = scene->tiny_triangles[i];
+        TinyTest test = tiny_test(&view, triangle.corner);
+        blocked = blocked | (test.inside & (test.distance > ray.tmin * test.determinant) & (test.distance < ray.tmax * test.determinant));
+    }
+    return blocked & live;
+}
+
+// The nearest hit of each live lane.
+Hit closest_hit(const Scene *scene, Ray ray, mask live) {
+    if (!OPAL_HAS_tree) return tiny_closest(scene, ray, live);
+    LaneRays rays;
+    store_rays(&rays, ray, live);
+    real1 t[LANES], u[LANES], v[LANES];
+    uint slot[LANES];
+    for (int lane = 0; lane < LANES; lane++) {
+        slot[lane] = OPAL_NONE;
+        t[lane] = u[lane] = v[lane] = 0;
+        if (rays.live[lane]) walk_closest(scene, load_ray(&rays, lane), t + lane, u + lane, v + lane, slot + lane);
+    }
+    Hit hit = {LOAD(real, t), LOAD(real, u), LOAD(real, v), LOAD(uints, slot)};
+    return hit;
+}
+
+// The live lanes whose way is blocked between tmin and tmax.
+mask any_hit(const Scene *scene, Ray ray, mask live) {
+    if (!OPAL_HAS_tree) return tiny_any(scene, ray, live);
+    LaneRays rays;
+    store_rays(&rays, ray, live);
+    int blocked[LANES];
+    for (int lane = 0; lane < LANES; lane++)
+        blocked[lane] = rays.live[lane] ? walk_any(scene, load_ray(&rays, lane)) : 0;
+    ints found = LOAD(ints, blocked);
+    return to_mask(found != 0) & live;
+}

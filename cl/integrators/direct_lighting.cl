@@ -1,0 +1,26 @@
+// direct_lighting: an emitter that is seen shows its radiance and nothing else; other surfaces show one bounce of direct light.
+//   surface_sampling   by points on the lights (--lighting emitter), else by BSDF sampling (bsdf)
+//   mis_sampling       by one of both with probability 1/2 and the balance heuristic (--lighting mis --mis one-sample);
+//                      balance and power take one sample of each
+mask direct_lighting_step(const Scene *scene, Path *path, Hit hit, mask live) {
+    mask found = live & to_mask(hit.slot != OPAL_NONE);
+    if (!ANY(found)) return found;
+    Surface s = surface_at(scene, path->ray, hit, found);
+    path->radiance = v3_add(path->radiance, v3_mul(path->throughput, emitted(scene, path, s, hit, found)));
+
+    // The first surface, if it is no light, gathers direct light.
+    mask lit = found & to_mask(path->depth == 1u) & to_mask(s.emitter == OPAL_NONE) & to_mask(path->depth < scene->settings->max_depth);
+    if (!ANY(lit)) return lit;
+    mask discrete = bsdf_is_discrete(scene, s.bsdf);
+    mask by_bsdf = lit, by_light = lit & !discrete;
+    if (CHOSEN(scene, lighting, emitter)) by_bsdf = lit & discrete;
+    if (CHOSEN(scene, lighting, mis) && CHOSEN(scene, mis, one_sample)) {
+        mask heads = path_draw(scene, path, DIM_LOBE).y < R(0.5);
+        by_bsdf = lit & (discrete | !heads);
+        by_light = by_light & heads;
+        path->throughput = v3_scale(path->throughput, discrete ? (real)(1) : (real)(2));
+    }
+    if (!CHOSEN(scene, lighting, bsdf))
+        path->radiance = v3_add(path->radiance, v3_mul(path->throughput, sampled_light(scene, path, s, by_light)));
+    return scatter(scene, path, s, by_bsdf);
+}

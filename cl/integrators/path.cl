@@ -1,0 +1,23 @@
+// path: path tracing (Kajiya 1986) with BSDF sampling, next-event estimation or both with MIS (--lighting), and Russian roulette.
+//   nee, mis, rr, rr_prob of path_tracer_recursive; path_mats, path_ems, path_mis name the three kinds of lighting
+mask path_step(const Scene *scene, Path *path, Hit hit, mask live) {
+    mask found = live & to_mask(hit.slot != OPAL_NONE);
+    if (!ANY(found)) return found;
+    Surface s = surface_at(scene, path->ray, hit, found);
+
+    // Light that was hit
+    path->radiance = v3_add(path->radiance, v3_mul(path->throughput, emitted(scene, path, s, hit, found)));
+    found = found & to_mask(path->depth < scene->settings->max_depth);
+    if (!ANY(found)) return found;
+
+    // Light that is sampled
+    if (!CHOSEN(scene, lighting, bsdf)) {
+        mask lit = found & !bsdf_is_discrete(scene, s.bsdf);
+        path->radiance = v3_add(path->radiance, v3_mul(path->throughput, sampled_light(scene, path, s, lit)));
+    }
+
+    // The next segment
+    real u = path_draw(scene, path, DIM_LOBE).y;
+    found = scatter(scene, path, s, found);
+    return roulette(scene, path, found, u);
+}

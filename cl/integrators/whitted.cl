@@ -1,0 +1,17 @@
+// whitted: what surfaces emit plus one bounce of direct light by emitter sampling; specular surfaces are followed, with
+// probability 0.95 (Nori's assignment 4; Whitted 1980).
+#define WHITTED_SURVIVAL R(0.95)
+
+mask whitted_step(const Scene *scene, Path *path, Hit hit, mask live) {
+    mask found = live & to_mask(hit.slot != OPAL_NONE);
+    if (!ANY(found)) return found;
+    Surface s = surface_at(scene, path->ray, hit, found);
+    path->radiance = v3_add(path->radiance, v3_mul(path->throughput, emitted(scene, path, s, hit, found)));
+    found = found & to_mask(path->depth < scene->settings->max_depth);
+    mask specular = found & bsdf_is_discrete(scene, s.bsdf);
+    path->radiance = v3_add(path->radiance, v3_mul(path->throughput, sampled_light(scene, path, s, found & !specular)));
+    if (!ANY(specular)) return specular;
+    real u = path_draw(scene, path, DIM_LOBE).y;
+    path->throughput = v3_scale(path->throughput, (real)(1 / WHITTED_SURVIVAL));
+    return scatter(scene, path, s, specular) & (u < WHITTED_SURVIVAL);
+}

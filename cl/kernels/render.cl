@@ -1,0 +1,226 @@
+// render: the megakernel. A work-item carries LANES paths of its own tile of pixels; a path that ends is replaced in place by
+// the next sample of the tile's queue, so that lanes stay full.
+#include "lanes.cl"
+#include "math.cl"
+#include "rng.cl"
+#include "warp.cl"
+#include "fresnel.cl"
+#include "scene.cl"
+#include "triangle.cl"
+#include "bvh.cl"
+#include "surface.cl"
+#include "bsdf.cl"
+#include "emitter.cl"
+#include "camera.cl"
+#include "film.cl"
+#include "lighting.cl"
+#include "integrators/normals.cl"
+#include "integrators/ao.cl"
+#include "integrators/simple.cl"
+#include "integrators/whitted.cl"
+#include "integrators/direct_lighting.cl"
+#include "integrators/path.cl"
+
+// One step of a path: its ray has hit `hit`. Returns the lanes that go on with a new ray.
+mask integrator_step(const Scene *scene, Path *path, Hit hit, mask live) {
+#define STEP(axis, name, help) if (CHOSEN(scene, integrator, name)) return name##_step(scene, path, hit, live);
+    OPAL_CHOICES_integrator(STEP)
+    return NO_LANES;
+}
+
+// The samples of a work-item: pixels of its tile, row by row, each with `samples` samples from first_sample on.
+typedef struct {
+    uint left, top, right, bottom;  // the tile's pixels
+    uint samples, first_sample;     // of this work-item, in each pixel
+    uint pass_first, pass_samples;  // of the pass
+    uint x, y, sample;              // the next one
+} Queue;
+
+// Hands each ended lane the next sample of the queue, where there is one. Returns the lanes that carry a path.
+mask refill(const Scene *scene, Queue *queue, Path *path, mask live) {
+    if (queue->y >= queue->bottom || !ANY(!live)) return live;
+    uint width = scene->settings->width;
+    int carries[LANES], fresh[LANES];
+    uint xs[LANES], ys[LANES], samples[LANES], slots[LANES];
+    STORE(to_ints(live), carries);
+    for (int lane = 0; lane < LANES; lane++) {
+        fresh[lane] = 0;
+        xs[lane] = ys[lane] = samples[lane] = slots[lane] = 0;
+        if (carries[lane] || queue->y >= queue->bottom) continue;
+        fresh[lane] = 1;
+        xs[lane] = queue->x;
+        ys[lane] = queue->y;
+        samples[lane] = queue->first_sample + queue->sample;
+        slots[lane] = (queue->y * width + queue->x) * queue->pass_samples + (samples[lane] - queue->pass_first);
+        if (++queue->sample == queue->samples) {
+            queue->sample = 0;
+            if (++queue->x == queue->right) {
+                queue->x = queue->left;
+                queue->y++;
+            }
+        }
+    }
+    ints taken = LOAD(ints, fresh);
+    mask start = to_mask(taken != 0);
+    uints x = LOAD(uints, xs), y = LOAD(uints, ys);
+    Sampler sampler = sampler_start(y * width + x, LOAD(uints, samples), scene->settings->seed);
+    Ray ray = camera_ray(scene, x, y, film_offset(scene, sampler));
+
+    path->ray.o = v3_pick(start, ray.o, path->ray.o);
+    path->ray.d = v3_pick(start, ray.d, path->ray.d);
+    path->ray.tmin = start ? ray.tmin : path->ray.tmin;
+    path->ray.tmax = start ? ray.tmax : path->ray.tmax;
+    path->throughput = v3_pick(start, v3_all((real)(1)), path->throughput);
+    path->radiance = v3_pick(start, v3_all((real)(0)), path->radiance);
+    path->eta = start ? (real)(1) : path->eta;
+    path->pdf = start ? (real)(1) : path->pdf;
+    path->direct = start | path->direct;
+    path->depth = uints_pick(start, (uints)(1), path->depth);
+    path->sampler.pixel = uints_pick(start, sampler.pixel, path->sampler.pixel);
+    path->sampler.sample = uints_pick(start, sampler.sample, path->sampler.sample);
+    path->sampler.key0 = uints_pick(start, sampler.key0, path->sampler.key0);
+    path->sampler.key1 = uints_pick(start, sampler.key1, path->sampler.key1);
+    path->slot = uints_pick(start, LOAD(uints, slots), path->slot);
+    return live | start;
+}
+
+// Puts the radiance of the paths that ended into their slots.
+void retire(global float *slots, const Path *path, mask ended) {
+    if (!ANY(ended)) return;
+    int done[LANES];
+    uint place[LANES];
+    real1 r[LANES], g[LANES], b[LANES];
+    STORE(to_ints(ended), done);
+    STORE(path->slot, place);
+    STORE(path->radiance.x, r);
+    STORE(path->radiance.y, g);
+    STORE(path->radiance.z, b);
+    for (int lane = 0; lane < LANES; lane++)
+        if (done[lane]) {
+            global float *slot = slots + 3 * (ulong)place[lane];
+            slot[0] = r[lane];
+            slot[1] = g[lane];
+            slot[2] = b[lane];
+        }
+}
+
+// Work-item i of a pass renders chunk i % chunks, of chunk_samples samples a pixel, of tile i / chunks.
+kernel void render(SCENE_PARAMETERS, global float *slots, uint first_item, uint items, uint tile_width, uint tile_height,
+                   uint chunks, uint chunk_samples, uint pass_first, uint pass_samples) {
+    Scene scene = SCENE_OF_PARAMETERS;
+    uint item = first_item + (uint)get_global_id(0);
+    if (item >= items) return; // a launch always has the same shape, so the last one reaches over the end
+    uint width = settings->width, height = settings->height;
+    uint columns = (width + tile_width - 1) / tile_width;
+    uint tile = item / chunks, chunk = item - tile * chunks;
+    uint left = (tile % columns) * tile_width, top = (tile / columns) * tile_height;
+    uint done = min(chunk * chunk_samples, pass_samples);
+    Queue queue = {left, top, min(left + tile_width, width), min(top + tile_height, height),
+                   min(chunk_samples, pass_samples - done), pass_first + done, pass_first, pass_samples, left, top, 0};
+    if (queue.samples == 0) return;
+
+    Path path;
+    path.ray.o = path.ray.d = path.throughput = path.radiance = v3_all((real)(0));
+    path.ray.tmin = path.ray.tmax = path.pdf = path.eta = 0;
+    path.depth = path.slot = path.sampler.pixel = path.sampler.sample = path.sampler.key0 = path.sampler.key1 = (uints)(0);
+    path.direct = NO_LANES;
+    mask live = NO_LANES;
+    for (;;) {
+        live = refill(&scene, &queue, &path, live);
+        if (!ANY(live)) break;
+        Hit hit = closest_hit(&scene, path.ray, live);
+        mask go_on = integrator_step(&scene, &path, hit, live);
+        retire(slots, &path, live & !go_on);
+        live = go_on;
+    }
+}
+
+// One sample's colour of each lane's pixel.
+v3 slot_color(global const float *slots, uints pixel, uint s, uint pass_samples) {
+    global const float *sample = slots + 3 * s;
+    uints word = pixel * (3 * pass_samples);
+    return v3_of(GATHER(real, sample, word, ), GATHER(real, (sample + 1), word, ), GATHER(real, (sample + 2), word, ));
+}
+
+// Counts samples that are neither finite nor empty, and notes the pixel and index of the first few.
+void note_invalid(global const float *slots, FilmPlace at, mask valid, uint s, uint pass_first, uint pass_samples, volatile global uint *invalid) {
+    int ok[LANES];
+    STORE(to_ints(valid), ok);
+    for (uint lane = 0; lane < LANES && at.first + lane < at.pixels; lane++) {
+        uint pixel = at.first + lane;
+        if (ok[lane] || as_uint(slots[3 * ((ulong)pixel * pass_samples + s)]) == SLOT_EMPTY) continue;
+        uint record = atomic_inc(invalid);
+        if (record < INVALID_RECORDS) {
+            invalid[1 + 2 * record] = pixel;
+            invalid[2 + 2 * record] = pass_first + s;
+        }
+    }
+}
+
+// The pixels' own samples, for the box filter and for statistics.
+void gather_own(FilmPlace at, global const float *slots, global float *film, global uint *counts, volatile global uint *invalid,
+                uint pass_first, uint pass_samples) {
+    Sum sums[3], squares[4];
+    for (uint c = 0; c < 3; c++) sums[c] = film_load(film, at, FILM_SUM + c, 3);
+    for (uint c = 0; c < 4; c++) squares[c] = film_load(film, at, FILM_SQUARES + c, 4);
+    uints count = GATHER(uints, counts, at.pixel, );
+    for (uint s = 0; s < pass_samples; s++) {
+        v3 c = slot_color(slots, at.pixel, s, pass_samples);
+        mask valid = is_finite(c);
+        if (ANY(!valid)) note_invalid(slots, at, valid, s, pass_first, pass_samples, invalid);
+        sums[0] = sum_add(sums[0], c.x, valid);
+        sums[1] = sum_add(sums[1], c.y, valid);
+        sums[2] = sum_add(sums[2], c.z, valid);
+        squares[0] = sum_add(squares[0], c.x * c.x, valid);
+        squares[1] = sum_add(squares[1], c.y * c.y, valid);
+        squares[2] = sum_add(squares[2], c.z * c.z, valid);
+        squares[3] = sum_add(squares[3], square(luminance(c)), valid);
+        count = count + uints_pick(valid, (uints)(1), (uints)(0));
+    }
+    for (uint c = 0; c < 3; c++) film_store(film, at, FILM_SUM + c, 3, sums[c]);
+    for (uint c = 0; c < 4; c++) film_store(film, at, FILM_SQUARES + c, 4, squares[c]);
+    uint count_of[LANES];
+    STORE(count, count_of);
+    for (uint lane = 0; lane < LANES && at.first + lane < at.pixels; lane++) counts[at.first + lane] = count_of[lane];
+}
+
+// The samples of the pixels around, wherever in those they fell, by the filter's weight.
+void gather_around(FilmPlace at, global const Settings *settings, global const float *slots, global float *film, uint pass_first,
+                   uint pass_samples) {
+    Scene scene = {settings, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+    uint width = settings->width, height = settings->height;
+    Sum sums[4];
+    for (uint c = 0; c < 4; c++) sums[c] = film_load(film, at, FILM_WEIGHTED + c, 4);
+    int reach = (int)ceil(settings->filter_radius - 0.5f);
+    uints x = at.pixel % width, y = at.pixel / width;
+    for (uint s = 0; s < pass_samples; s++)
+        for (int dy = -reach; dy <= reach; dy++)
+            for (int dx = -reach; dx <= reach; dx++) {
+                uints nx = x + (uint)dx, ny = y + (uint)dy; // below 0 wraps to far beyond the image
+                mask inside = to_mask(nx < width) & to_mask(ny < height);
+                uints pixel = uints_pick(inside, ny * width + nx, (uints)(0));
+                v2 offset = film_offset(&scene, sampler_start(pixel, (uints)(pass_first + s), settings->seed));
+                real w = filter_1d(settings, offset.x - R(0.5) + (real1)dx) * filter_1d(settings, offset.y - R(0.5) + (real1)dy);
+                v3 c = slot_color(slots, pixel, s, pass_samples);
+                mask valid = inside & is_finite(c);
+                sums[0] = sum_add(sums[0], w * c.x, valid);
+                sums[1] = sum_add(sums[1], w * c.y, valid);
+                sums[2] = sum_add(sums[2], w * c.z, valid);
+                sums[3] = sum_add(sums[3], w, valid);
+            }
+    for (uint c = 0; c < 4; c++) film_store(film, at, FILM_WEIGHTED + c, 4, sums[c]);
+}
+
+// Adds a pass to the film: LANES pixels a work-item, each sample after the other.
+kernel void gather(global const Settings *settings, global const float *slots, global float *film, global uint *counts,
+                   volatile global uint *invalid, uint pass_first, uint pass_samples) {
+    FilmPlace at;
+    at.pixels = settings->width * settings->height;
+    at.first = (uint)get_global_id(0) * LANES;
+    if (at.first >= at.pixels) return;
+    uint index[LANES];
+    for (uint lane = 0; lane < LANES; lane++) index[lane] = min(at.first + lane, at.pixels - 1);
+    at.pixel = LOAD(uints, index);
+    gather_own(at, slots, film, counts, invalid, pass_first, pass_samples);
+    if (OPAL_HAS_wide_filter) gather_around(at, settings, slots, film, pass_first, pass_samples);
+}

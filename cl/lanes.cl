@@ -1,0 +1,125 @@
+// lanes: the types that hold LANES paths at once, and the few operations that know the width.
+//
+// A work-item carries LANES paths, one to a lane. Shading code is written on these types and reads the same at every
+// width (1, 4, 8, 16) and in both precisions. At width 1 they are plain scalars.
+//   real   one number a lane: float, or double where OPAL_DOUBLE
+//   mask   one truth a lane, as a comparison of reals gives it: combine with & | !, never with ~ (a scalar's truth is 1)
+//   ints, uints   one index or hash a lane; their comparisons go through to_mask before they meet a mask
+//   real1, real8  one number; eight numbers of one ray (children of a node, triangles of a block)
+#define CAT_(a, b) a##b
+#define CAT(a, b) CAT_(a, b)
+
+#if OPAL_DOUBLE
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+typedef double real1;
+typedef double8 real8;
+typedef long8 mask8;
+#define R(x) x
+#define REAL_NAME double
+#define MASK_NAME long
+#define EPSILON 1.1102230246251565e-16 // half an ulp of 1
+#else
+typedef float real1;
+typedef float8 real8;
+typedef int8 mask8;
+#define R(x) x##f
+#define REAL_NAME float
+#define MASK_NAME int
+#define EPSILON 5.9604645e-08f
+#endif
+
+#if LANES == 1
+#define WIDE(T) T
+#define ANY(m) (m)
+#define EACH_LANE(E) E(0)
+#define LANE_OF(v, i) (v)
+#define STORE(v, array) ((array)[0] = (v))
+#define LOAD(T, array) ((array)[0])
+#define to_mask(condition) (condition)
+#define to_ints(m) (m)
+#define AT(array, i, field) array[i] field
+#define GATHER(T, array, i, field) ((T)(AT(array, i, field)))
+#else
+#define WIDE(T) CAT(T, LANES)
+#define ANY(m) any(m)
+#define STORE(v, array) CAT(vstore, LANES)(v, 0, array)
+#define LOAD(T, array) CAT(vload, LANES)(0, array)
+#define to_mask(condition) CAT(convert_, WIDE(MASK_NAME))(condition)
+#define to_ints(m) CAT(convert_, WIDE(int))(m)
+#define AT(array, i, field) array[i] field
+#define GATHER_4(array, i, field) \
+    AT(array, i.s0, field), AT(array, i.s1, field), AT(array, i.s2, field), AT(array, i.s3, field)
+#define GATHER_8(array, i, field) \
+    GATHER_4(array, i, field), AT(array, i.s4, field), AT(array, i.s5, field), AT(array, i.s6, field), AT(array, i.s7, field)
+#define GATHER_16(array, i, field) \
+    GATHER_8(array, i, field), AT(array, i.s8, field), AT(array, i.s9, field), AT(array, i.sa, field), \
+        AT(array, i.sb, field), AT(array, i.sc, field), AT(array, i.sd, field), AT(array, i.se, field), AT(array, i.sf, field)
+// array[i] field of each lane's own i: GATHER(real, scene->bsdfs, id, .u.phong.n)
+#define GATHER(T, array, i, field) ((T)(CAT(GATHER_, LANES)(array, i, field)))
+#endif
+
+// A field of three floats, as one v3: GATHER_V3(scene->bsdfs, id, .u.diffuse.albedo)
+#define GATHER_V3(array, i, field) v3_of(GATHER(real, array, i, field[0]), GATHER(real, array, i, field[1]), GATHER(real, array, i, field[2]))
+
+typedef WIDE(REAL_NAME) real;
+#if LANES == 1
+typedef int mask;
+#else
+typedef WIDE(MASK_NAME) mask;
+#endif
+typedef WIDE(int) ints;
+typedef WIDE(uint) uints;
+
+#define to_real(i) CAT(convert_, WIDE(REAL_NAME))(i)
+#define to_uints(x) CAT(convert_, WIDE(uint))(x)
+
+#define NO_LANES ((mask)(0))
+#define ALL_LANES (!NO_LANES)
+
+typedef struct { real x, y; } v2;
+typedef struct { real x, y, z; } v3;
+
+v2 v2_of(real x, real y) { v2 v = {x, y}; return v; }
+v3 v3_of(real x, real y, real z) { v3 v = {x, y, z}; return v; }
+v3 v3_all(real x) { return v3_of(x, x, x); }
+v3 v3_from(global const float *p) { return v3_of((real)(p[0]), (real)(p[1]), (real)(p[2])); }
+v3 v3_add(v3 a, v3 b) { return v3_of(a.x + b.x, a.y + b.y, a.z + b.z); }
+v3 v3_sub(v3 a, v3 b) { return v3_of(a.x - b.x, a.y - b.y, a.z - b.z); }
+v3 v3_mul(v3 a, v3 b) { return v3_of(a.x * b.x, a.y * b.y, a.z * b.z); }
+v3 v3_scale(v3 a, real s) { return v3_of(a.x * s, a.y * s, a.z * s); }
+v3 v3_neg(v3 a) { return v3_of(-a.x, -a.y, -a.z); }
+v3 v3_mad(v3 a, real s, v3 b) { return v3_of(mad(a.x, s, b.x), mad(a.y, s, b.y), mad(a.z, s, b.z)); } // a s + b
+real v3_dot(v3 a, v3 b) { return mad(a.x, b.x, mad(a.y, b.y, a.z * b.z)); }
+v3 v3_cross(v3 a, v3 b) { return v3_of(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x); }
+v3 v3_normalize(v3 a) { return v3_scale(a, rsqrt(v3_dot(a, a))); }
+v3 v3_abs(v3 a) { return v3_of(fabs(a.x), fabs(a.y), fabs(a.z)); }
+
+uints uints_pick(mask m, uints yes, uints no) { return to_ints(m) ? yes : no; }
+v3 v3_pick(mask m, v3 yes, v3 no) { return v3_of(m ? yes.x : no.x, m ? yes.y : no.y, m ? yes.z : no.z); }
+
+// Comparisons that leave minps and maxps alone: NaN in a is dropped, NaN in b stays.
+real8 real8_min(real8 a, real8 b) { return a < b ? a : b; }
+real8 real8_max(real8 a, real8 b) { return a > b ? a : b; }
+
+// Bit i of the result is lane i of a comparison of real8s.
+uint bits_of(mask8 truth) {
+#if OPAL_DOUBLE
+    int8 m = convert_int8(truth);
+#else
+    int8 m = truth;
+#endif
+    m &= (int8)(1, 2, 4, 8, 16, 32, 64, 128);
+    int4 a = m.lo | m.hi;
+    int2 b = a.lo | a.hi;
+    return (uint)(b.lo | b.hi);
+}
+uint lowest_bit(uint bits) { return 31 - clz(bits & (0 - bits)); } // CL 1.2 has no ctz
+
+// Eight floats of a record in memory, as reals.
+real8 load8(global const float *p) {
+#if OPAL_DOUBLE
+    return convert_double8(vload8(0, p));
+#else
+    return vload8(0, p);
+#endif
+}

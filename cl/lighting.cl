@@ -1,0 +1,106 @@
+// lighting: what integrators share: a path's state, light that is hit, light that is sampled, the next direction, roulette.
+typedef struct {
+    Ray ray;
+    v3 throughput, radiance;
+    real pdf;        // density of ray.d over solid angle where it was drawn
+    real eta;        // product of the indices passed: throughput * eta^2 is free of refraction's scaling
+    mask direct;     // no light sampling could have found what this ray hits: camera rays and discrete BSDFs
+    uints depth;     // segments so far, this ray included
+    Sampler sampler;
+    uints slot;      // of the film
+} Path;
+
+// The pair `dimension` of the path's present segment.
+v2 path_draw(const Scene *scene, const Path *path, uint dimension) {
+    return draw(scene, path->sampler, 1u + (path->depth - 1u) * (uint)DIMS_A_SEGMENT + dimension);
+}
+
+// Weight of a sample whose own density is 1 against another of density `ratio` (Veach 1997, eq. 9.8 and 9.10). As a ratio it
+// survives densities that are 0 or overflow.
+real mis_weight(const Scene *scene, real ratio) {
+    return 1 / (1 + (CHOSEN(scene, mis, power) ? ratio * ratio : ratio));
+}
+
+// Radiance that the surface emits towards the viewer, weighted by how else it could have been found.
+v3 emitted(const Scene *scene, const Path *path, Surface s, Hit hit, mask found) {
+    v3 none = v3_all((real)(0));
+    if (EMITTER_KINDS == 0) return none;
+    mask shining = found & to_mask(s.emitter != OPAL_NONE) & (s.wi.z > 0);
+    if (CHOSEN(scene, lighting, emitter)) shining = shining & path->direct;
+    if (!ANY(shining)) return none;
+    uints id = uints_pick(shining, s.emitter, (uints)(0));
+    v3 radiance = emitter_radiance(scene, id);
+    if (CHOSEN(scene, lighting, mis)) {
+        // Both densities over solid angle; the light's is turned by distance^2 / cosine.
+        real cosine = fabs(v3_dot(s.normal, path->ray.d));
+        real ratio = emitter_area_pdf(scene, id, s.area) * square(hit.t) / (cosine * path->pdf);
+        radiance = v3_scale(radiance, path->direct ? (real)(1) : mis_weight(scene, ratio));
+    }
+    return v3_pick(shining, radiance, none);
+}
+
+// Direct light by one point on one emitter, weighted against BSDF sampling where both are used.
+v3 sampled_light(const Scene *scene, const Path *path, Surface s, mask live) {
+    v3 none = v3_all((real)(0));
+    if (EMITTER_KINDS == 0 || !ANY(live)) return none;
+    uints id = emitter_choose(scene, path_draw(scene, path, DIM_EMITTER));
+    EmitterSample light = emitter_sample(scene, id, path_draw(scene, path, DIM_LIGHT), path_draw(scene, path, DIM_TRIANGLE), live);
+
+    v3 to_light = v3_sub(light.p, s.p);
+    real inverse_distance = rsqrt(v3_dot(to_light, to_light));
+    v3 wo = to_local(s.frame, v3_scale(to_light, inverse_distance));
+    mask facing = light.discrete | (v3_dot(light.facing, to_light) < 0);
+    live = live & facing & (wo.z > 0) & (inverse_distance < FAR);
+    if (!ANY(live)) return none;
+
+    // cos / distance^2 turns a density over area into one over solid angle.
+    real cosine = light.discrete ? (real)(1) : fabs(v3_dot(light.normal, to_light)) * inverse_distance;
+    real per_density = cosine * square(inverse_distance) / (light.density * emitter_probability(scene, id));
+    real bsdf_density;
+    v3 f = bsdf_eval(scene, s.bsdf, s.wi, wo, live, &bsdf_density);
+    if (CHOSEN(scene, lighting, mis)) {
+        real weight = mis_weight(scene, light.discrete ? (real)(0) : bsdf_density * per_density);
+        per_density = weight * per_density;
+    }
+    v3 light_in = v3_scale(v3_mul(f, emitter_radiance(scene, id)), wo.z * per_density);
+    live = live & (v3_largest(light_in) > 0);
+    if (!ANY(live)) return none;
+
+    // The ray ends at t = 1, above the light's surface as it starts above this one's.
+    v3 start = leave_surface(s, to_light);
+    v3 end = v3_mad(light.normal, copysign(light.margin, -v3_dot(light.normal, to_light)), light.p);
+    Ray shadow = {start, v3_sub(end, start), (real)(0), (real)(1)};
+    return v3_pick(live & !any_hit(scene, shadow, live), light_in, none);
+}
+
+// The path's next segment, drawn by the BSDF. Returns the lanes whose path carries anything on.
+mask scatter(const Scene *scene, Path *path, Surface s, mask live) {
+    v2 lobe = path_draw(scene, path, DIM_LOBE);
+    BsdfSample sample = bsdf_sample(scene, s.bsdf, s.wi, path_draw(scene, path, DIM_BSDF), lobe.x, live);
+    live = live & (v3_largest(sample.weight) > 0);
+    v3 d = to_world(s.frame, sample.wo);
+    path->ray.o = leave_surface(s, d);
+    path->ray.d = d;
+    path->ray.tmin = 0;
+    path->ray.tmax = FAR;
+    path->throughput = v3_mul(path->throughput, sample.weight);
+    path->eta = path->eta * sample.eta;
+    path->direct = sample.discrete;
+    if (CHOSEN(scene, lighting, mis)) path->pdf = bsdf_pdf(scene, s.bsdf, s.wi, sample.wo, live);
+    path->depth = path->depth + 1u;
+    return live & (v3_largest(path->throughput) > 0);
+}
+
+// Ends paths at random and makes up for them in those that go on. It looks at the pair that scatter drew its lobe from.
+mask roulette(const Scene *scene, Path *path, mask live, real u) {
+    if (CHOSEN(scene, rr, off)) return live;
+    real survival = scene->settings->rr_prob;
+    if (!CHOSEN(scene, rr, fixed)) {
+        survival = v3_largest(path->throughput);
+        if (CHOSEN(scene, rr, throughput_eta)) survival = survival * square(path->eta);
+        survival = real_min(survival, (real)(1));
+    }
+    mask plays = live & to_mask(path->depth > scene->settings->rr_depth);
+    path->throughput = v3_scale(path->throughput, plays ? 1 / survival : (real)(1));
+    return live & (!plays | (u < survival));
+}

@@ -1,0 +1,56 @@
+// math: constants, frames and the few functions that are faster or safer here than in the library.
+#define PI R(3.14159265358979323846)
+#define INV_PI R(0.31830988618379067154)
+#define INV_TWO_PI R(0.15915494309189533577)
+#define INV_FOUR_PI R(0.07957747154594766788)
+#define FAR R(1e30) // farther than anything: scenes are flattened to about [-1, 1]; finite, so that fast math may have it
+
+real square(real x) { return x * x; }
+real real_min(real a, real b) { return a < b ? a : b; } // NaN in a is dropped, NaN in b stays: minps, unlike fmin
+real real_max(real a, real b) { return a > b ? a : b; }
+real safe_sqrt(real x) { return sqrt(real_max(x, (real)(0))); }
+
+// sin and cos of 2 pi u for any u of moderate size, without the library's argument reduction: u is reduced exactly to an
+// eighth of a turn, where the Taylor series ends below half an ulp (x^11/11! < 2^-28; in double x^19/19! < 2^-57).
+v2 cos_sin_2pi(real u) {
+    real quarter = rint(4 * u);
+    real x = (u - R(0.25) * quarter) * R(6.28318530717958647693);
+    real x2 = x * x;
+    real s = R(2.7557319223985893e-06), c = R(-2.7557319223985888e-07);
+    if (OPAL_DOUBLE) {
+        s = mad(x2, mad(x2, mad(x2, mad(x2, (real)(R(2.8114572543455206e-15)), (real)(R(-7.6471637318198164e-13))),
+                                (real)(R(1.6059043836821613e-10))), (real)(R(-2.5052108385441720e-08))), s);
+        c = mad(x2, mad(x2, mad(x2, (real)(R(4.7794773323873853e-14)), (real)(R(-1.1470745597729725e-11))),
+                        (real)(R(2.0876756987868099e-09))), c);
+    }
+    s = mad(x2, mad(x2, mad(x2, s, (real)(R(-1.9841269841269841e-04))), (real)(R(8.3333333333333333e-03))),
+            (real)(R(-1.6666666666666667e-01)));
+    s = mad(x * x2, s, x);
+    c = mad(x2, mad(x2, mad(x2, c, (real)(R(2.4801587301587302e-05))), (real)(R(-1.3888888888888889e-03))),
+            (real)(R(4.1666666666666667e-02)));
+    c = mad(x2 * x2, c, mad(x2, (real)(R(-0.5)), (real)(1)));
+    // Quarter turns: odd ones swap, 1 and 2 negate the cosine, 2 and 3 the sine.
+    real turn = quarter - 4 * floor(R(0.25) * quarter);
+    mask odd = turn == 1 | turn == 3;
+    real cosine = odd ? s : c, sine = odd ? c : s;
+    return v2_of((turn == 1 | turn == 2) ? -cosine : cosine, turn >= 2 ? -sine : sine);
+}
+
+// An orthonormal frame around the unit vector n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
+typedef struct { v3 s, t, n; } Frame;
+
+Frame frame_of(v3 n) {
+    real sign = copysign((real)(1), n.z);
+    real a = -1 / (sign + n.z), b = n.x * n.y * a;
+    Frame f = {v3_of(1 + sign * n.x * n.x * a, sign * b, -sign * n.x), v3_of(b, sign + n.y * n.y * a, -n.y), n};
+    return f;
+}
+v3 to_local(Frame f, v3 v) { return v3_of(v3_dot(v, f.s), v3_dot(v, f.t), v3_dot(v, f.n)); }
+v3 to_world(Frame f, v3 v) { return v3_mad(f.s, v.x, v3_mad(f.t, v.y, v3_scale(f.n, v.z))); }
+
+real v3_largest(v3 a) { return real_max(a.x, real_max(a.y, a.z)); }
+real sin2_theta(v3 w) { return mad(w.x, w.x, w.y * w.y); } // not 1 - cos^2, which loses all digits near the pole
+v3 reflect_z(v3 w) { return v3_of(-w.x, -w.y, w.z); }
+
+// Luminance of linear RGB (ITU-R BT.709).
+real luminance(v3 c) { return R(0.212671) * c.x + R(0.715160) * c.y + R(0.072169) * c.z; }

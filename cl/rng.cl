@@ -1,0 +1,115 @@
+// rng: random numbers that depend on (pixel, sample index, dimension, seed) alone, so that an image does not depend on how
+// its samples are cut into passes or spread over lanes. Every number is k 2^-24 with k < 2^24: in [0, 1), exact in float.
+//
+// A dimension is a pair of numbers. Dimension 0 places the sample in its pixel; a path's segment d owns the
+// DIMS_A_SEGMENT dimensions from 1 + d DIMS_A_SEGMENT on.
+#define DIM_FILM 0
+#define DIM_BSDF 0         // within a segment: direction
+#define DIM_LOBE 1         // .x which lobe, .y Russian roulette
+#define DIM_LIGHT 2        // point on the light
+#define DIM_EMITTER 3      // which emitter: .x row, .y alias
+#define DIM_TRIANGLE 4     // which triangle: .x row, .y alias
+#define DIMS_A_SEGMENT 5
+
+typedef struct {
+    uints pixel, sample;   // y * width + x; index of the sample within its pixel
+    uints key0, key1;      // their hash with the seed
+} Sampler;
+
+typedef struct { uints x, y, z; } u3;
+
+// pcg3d and pcg4d of Jarzynski and Olano 2020, "Hash Functions for GPU Rendering".
+u3 pcg3d(uints x, uints y, uints z) {
+    x = x * 1664525u + 1013904223u; y = y * 1664525u + 1013904223u; z = z * 1664525u + 1013904223u;
+    x += y * z; y += z * x; z += x * y;
+    x ^= x >> 16; y ^= y >> 16; z ^= z >> 16;
+    x += y * z; y += z * x; z += x * y;
+    u3 r = {x, y, z};
+    return r;
+}
+void pcg4d(uints *x, uints *y, uints *z, uints *w) {
+    *x = *x * 1664525u + 1013904223u; *y = *y * 1664525u + 1013904223u;
+    *z = *z * 1664525u + 1013904223u; *w = *w * 1664525u + 1013904223u;
+    *x += *y * *w; *y += *z * *x; *z += *x * *y; *w += *y * *z;
+    *x ^= *x >> 16; *y ^= *y >> 16; *z ^= *z >> 16; *w ^= *w >> 16;
+    *x += *y * *w; *y += *z * *x; *z += *x * *y; *w += *y * *z;
+}
+
+Sampler sampler_start(uints pixel, uints sample, uint seed) {
+    uints x = pixel, y = sample, z = (uints)(seed), w = (uints)(0x9e3779b9u);
+    pcg4d(&x, &y, &z, &w);
+    Sampler s = {pixel, sample, x, y};
+    return s;
+}
+
+// The upper 24 bits as a number in [0, 1).
+real unit_real(uints bits) { return to_real(bits >> 8) * R(5.9604644775390625e-08); }
+
+uints reverse_bits(uints x) {
+    x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+    x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+    x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+    x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
+    return (x >> 16) | (x << 16);
+}
+
+// An Owen scramble of the bits of x, highest first, as a hash (Laine and Karras 2011, improved by Vegdahl 2021).
+uints owen_scramble(uints x, uints seed) {
+    x = reverse_bits(x);
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= (seed >> 16) | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return reverse_bits(x);
+}
+
+// The second Sobol dimension of index i: its generator is Pascal's triangle mod 2, a sum over subsets of bit positions,
+// hence five butterflies on the reversed bits.
+uints sobol_second(uints i) {
+    uints x = reverse_bits(i);
+    x ^= (x & 0xaaaaaaaau) >> 1;
+    x ^= (x & 0xccccccccu) >> 2;
+    x ^= (x & 0xf0f0f0f0u) >> 4;
+    x ^= (x & 0xff00ff00u) >> 8;
+    x ^= (x & 0xffff0000u) >> 16;
+    return x;
+}
+
+// A pair of Owen-scrambled Sobol points, padded: each dimension shuffles the order of its points (Burley 2020).
+v2 sobol_pair(Sampler s, uints dimension, uint seed) {
+    u3 h = pcg3d(s.pixel, dimension, (uints)(seed));
+    uints i = owen_scramble(s.sample, h.x);
+    return v2_of(unit_real(owen_scramble(reverse_bits(i), h.y)), unit_real(owen_scramble(sobol_second(i), h.z)));
+}
+
+// Place of i in a random permutation of 0 ... n-1 (Kensler 2013, "Correlated Multi-Jittered Sampling", listing 3).
+uints permute(uints i, uint n, uints p) {
+    uint w = n - 1;
+    w |= w >> 1; w |= w >> 2; w |= w >> 4; w |= w >> 8; w |= w >> 16;
+    uints r = i;
+    mask out = to_mask(r == r);
+    while (ANY(out)) {
+        uints x = r;
+        x ^= p; x *= 0xe170893du; x ^= p >> 16; x ^= (x & w) >> 4; x ^= p >> 8; x *= 0x0929eb3fu;
+        x ^= p >> 23; x ^= (x & w) >> 1; x *= 1 | p >> 27; x *= 0x6935fa69u; x ^= (x & w) >> 11; x *= 0x74dcb303u;
+        x ^= (x & w) >> 2; x *= 0x9e501cc3u; x ^= (x & w) >> 2; x *= 0xc860a3dfu; x &= w; x ^= x >> 5;
+        r = uints_pick(out, x, r);
+        out = out & to_mask(r >= n);
+    }
+    return (r + p % n) % n;
+}
+
+// One jittered stratum of a grid of at least `spp` cells a sample, in an order of its own for each dimension.
+v2 stratified_pair(Sampler s, uints dimension, uint spp, uint seed) {
+    uint columns = max(1u, (uint)sqrt((float)spp)), rows = (spp + columns - 1) / columns, cells = columns * rows;
+    uints round = s.sample / cells; // past spp the strata start over
+    u3 h = pcg3d(s.pixel, dimension, (uints)(seed) ^ (round * 0x85ebca6bu));
+    u3 jitter = pcg3d(s.key0, s.key1, dimension);
+    uints cell = permute(s.sample - round * cells, cells, h.x);
+    uints row = cell / columns, column = cell - row * columns;
+    // (cell + u) / n rounds up to 1 for the last cell: kept below.
+    real below_one = R(0.999999940395355224609375);
+    return v2_of(real_min((to_real(column) + unit_real(jitter.x)) / (real1)columns, (real)(below_one)),
+                 real_min((to_real(row) + unit_real(jitter.y)) / (real1)rows, (real)(below_one)));
+}

@@ -1,0 +1,52 @@
+// scene: the buffers, gathered once into a struct of pointers that every function takes.
+#include "shared/types.h"
+#include "shared/features.h"
+
+typedef struct {
+    global const Settings *settings;
+    global const BvhNode *nodes;
+    global const TriangleBlock *blocks;
+    global const Triangle *triangles;
+    global const float *normals;
+    global const float *tiny_vertices;
+    global const TinyTriangle *tiny_triangles;
+    global const MeshRecord *meshes;
+    global const BsdfRecord *bsdfs;
+    global const EmitterRecord *emitters;
+    global const LightTriangle *light_triangles;
+} Scene;
+
+// Every kernel that sees the scene has these parameters, in the order in which the host sets them (host/render/scene_buffers.cpp).
+#define SCENE_PARAMETERS \
+    global const Settings *settings, global const BvhNode *nodes, global const TriangleBlock *blocks, \
+        global const Triangle *triangles, global const float *normals, global const float *tiny_vertices, \
+        global const TinyTriangle *tiny_triangles, global const MeshRecord *meshes, global const BsdfRecord *bsdfs, \
+        global const EmitterRecord *emitters, global const LightTriangle *light_triangles
+#define SCENE_OF_PARAMETERS \
+    {settings, nodes, blocks, triangles, normals, tiny_vertices, tiny_triangles, meshes, bsdfs, emitters, light_triangles}
+
+// Is this the choice of that axis? A constant where the kernel is specialised, else read from the settings.
+#define CHOSEN(scene, axis, choice) \
+    (OPAL_AXIS_##axis < 0 ? (scene)->settings->choices[AXIS_##axis] == CHOICE_##axis##_##choice \
+                          : OPAL_AXIS_##axis == CHOICE_##axis##_##choice)
+
+// Rays, one a lane. d need not be unit; a hit has tmin < t < tmax.
+typedef struct {
+    v3 o, d;
+    real tmin, tmax;
+} Ray;
+
+// The nearest hit of each lane: its distance, barycentric weights of corners 1 and 2, and the triangle's slot
+// (block * 8 + place); slot = OPAL_NONE: none.
+typedef struct {
+    real t, u, v;
+    uints slot;
+} Hit;
+
+// A pair of numbers of a dimension, by the chosen sampler.
+v2 draw(const Scene *scene, Sampler s, uints dimension) {
+    if (CHOSEN(scene, sampler, sobol)) return sobol_pair(s, dimension, scene->settings->seed);
+    if (CHOSEN(scene, sampler, stratified)) return stratified_pair(s, dimension, scene->settings->spp, scene->settings->seed);
+    u3 h = pcg3d(s.key0, s.key1, dimension);
+    return v2_of(unit_real(h.x), unit_real(h.y));
+}

@@ -1,0 +1,74 @@
+// surface: what is known of the points where rays met triangles.
+typedef struct {
+    v3 p;                // position
+    v3 normal;           // geometric, unit, on the side of (p1-p0) x (p2-p0)
+    Frame frame;         // around the shading normal
+    v3 wi;               // towards where the ray came from, local
+    real area;           // of the triangle
+    real margin;         // bound of the error of p along the normal, with that of the next intersection
+    uints bsdf, emitter; // indices; emitter = OPAL_NONE where it does not emit
+} Surface;
+
+// Corner `corner` of the triangles in `slot`.
+v3 triangle_vertex(const Scene *scene, uints slot, uint corner) {
+    global const float *first = scene->blocks->vertex[corner][0];
+    uints word = (slot >> 3) * (uint)(sizeof(TriangleBlock) / 4) + (slot & 7u);
+    return v3_of(GATHER(real, first, word, ), GATHER(real, (first + 8), word, ), GATHER(real, (first + 16), word, ));
+}
+
+v3 vertex_normal(const Scene *scene, uints index) {
+    uints word = index * 3u;
+    return v3_of(GATHER(real, scene->normals, word, ), GATHER(real, (scene->normals + 1), word, ), GATHER(real, (scene->normals + 2), word, ));
+}
+
+// The shading normal at barycentric weights u, v: interpolated where all corners have one, else the geometric.
+v3 shading_normal(const Scene *scene, uints triangle, real u, real v, v3 geometric) {
+    if (!OPAL_HAS_shading_normals) return geometric;
+    uints n0 = GATHER(uints, scene->triangles, triangle, .normal[0]);
+    uints n1 = GATHER(uints, scene->triangles, triangle, .normal[1]);
+    uints n2 = GATHER(uints, scene->triangles, triangle, .normal[2]);
+    mask smooth = to_mask(n0 != OPAL_NONE) & to_mask(n1 != OPAL_NONE) & to_mask(n2 != OPAL_NONE);
+    if (!ANY(smooth)) return geometric;
+    n0 = uints_pick(smooth, n0, (uints)(0));
+    n1 = uints_pick(smooth, n1, (uints)(0));
+    n2 = uints_pick(smooth, n2, (uints)(0));
+    v3 n = v3_mad(vertex_normal(scene, n1), u, v3_mad(vertex_normal(scene, n2), v, v3_scale(vertex_normal(scene, n0), 1 - u - v)));
+    real length2 = v3_dot(n, n);
+    return v3_pick(smooth & (length2 > 0), v3_scale(n, rsqrt(length2)), geometric);
+}
+
+// A bound of how far, along the normal, a point computed on this triangle may lie from it, and how far above it a ray must
+// start to be seen on the right side by triangle.cl: both are some roundings of the largest coordinate involved.
+real surface_margin(v3 p0, v3 p1, v3 p2) {
+    real largest = real_max(v3_largest(v3_abs(p0)), real_max(v3_largest(v3_abs(p1)), v3_largest(v3_abs(p2))));
+    return 24 * EPSILON * largest;
+}
+
+// `found`: the lanes that hit something; the others get the values of slot 0.
+Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask found) {
+    uints slot = uints_pick(found, hit.slot, (uints)(0));
+    v3 p0 = triangle_vertex(scene, slot, 0), p1 = triangle_vertex(scene, slot, 1), p2 = triangle_vertex(scene, slot, 2);
+    v3 e1 = v3_sub(p1, p0), e2 = v3_sub(p2, p0);
+    v3 n = v3_cross(e1, e2);
+    real inverse_length = rsqrt(v3_dot(n, n));
+
+    Surface s;
+    s.p = v3_mad(e1, hit.u, v3_mad(e2, hit.v, p0)); // from the triangle, not along the ray: far closer to the plane
+    s.normal = v3_scale(n, inverse_length);
+    s.area = R(0.5) / inverse_length;
+    s.margin = surface_margin(p0, p1, p2);
+    uints id_word = (slot >> 3) * (uint)(sizeof(TriangleBlock) / 4) + (slot & 7u);
+    uints triangle = GATHER(uints, scene->blocks->id, id_word, );
+    s.frame = frame_of(shading_normal(scene, triangle, hit.u, hit.v, s.normal));
+    s.wi = to_local(s.frame, v3_scale(v3_neg(ray.d), rsqrt(v3_dot(ray.d, ray.d))));
+    uints mesh = GATHER(uints, scene->triangles, triangle, .mesh);
+    s.bsdf = GATHER(uints, scene->meshes, mesh, .bsdf);
+    s.emitter = GATHER(uints, scene->meshes, mesh, .emitter);
+    return s;
+}
+
+// A ray from the surface in direction d, started far enough above it not to meet it again.
+v3 leave_surface(Surface s, v3 d) {
+    real side = copysign(s.margin, v3_dot(s.normal, d));
+    return v3_mad(s.normal, side, s.p);
+}
