@@ -104,21 +104,26 @@ void retire(global float *slots, const Path *path, mask ended) {
         }
 }
 
-// Work-item i of a pass renders chunk i % chunks, of chunk_samples samples a pixel, of tile i / chunks.
-kernel void render(SCENE_PARAMETERS, global float *slots, uint first_item, uint items, uint tile_width, uint tile_height,
-                   uint chunks, uint chunk_samples, uint pass_first, uint pass_samples) {
-    Scene scene = SCENE_OF_PARAMETERS;
-    uint item = first_item + (uint)get_global_id(0);
-    if (item >= items) return; // a launch always has the same shape, so the last one reaches over the end
+// The samples of work-item `item` of a pass: chunk item % chunks, of chunk_samples samples a pixel, of tile item / chunks. None
+// for items past the end: a launch always has the same shape, so the last one reaches over it.
+Queue queue_of(global const Settings *settings, uint item, uint items, uint tile_width, uint tile_height, uint chunks,
+               uint chunk_samples, uint pass_first, uint pass_samples) {
     uint width = settings->width, height = settings->height;
     uint columns = (width + tile_width - 1) / tile_width;
     uint tile = item / chunks, chunk = item - tile * chunks;
     uint left = (tile % columns) * tile_width, top = (tile / columns) * tile_height;
     uint done = min(chunk * chunk_samples, pass_samples);
-    Queue queue = {left, top, min(left + tile_width, width), min(top + tile_height, height),
-                   min(chunk_samples, pass_samples - done), pass_first + done, pass_first, pass_samples, left, top, 0};
-    if (queue.samples == 0) return;
+    uint samples = item < items ? min(chunk_samples, pass_samples - done) : 0;
+    Queue queue = {left, top, min(left + tile_width, width), samples ? min(top + tile_height, height) : top,
+                   samples, pass_first + done, pass_first, pass_samples, left, top, 0};
+    return queue;
+}
 
+kernel void render(SCENE_PARAMETERS, global float *slots, uint first_item, uint items, uint tile_width, uint tile_height,
+                   uint chunks, uint chunk_samples, uint pass_first, uint pass_samples) {
+    Scene scene = SCENE_OF_PARAMETERS;
+    Queue queue = queue_of(settings, first_item + (uint)get_global_id(0), items, tile_width, tile_height, chunks, chunk_samples,
+                           pass_first, pass_samples);
     Path path;
     path.ray.o = path.ray.d = path.throughput = path.radiance = v3_all((real)(0));
     path.ray.tmin = path.ray.tmax = path.pdf = path.eta = 0;
@@ -133,6 +138,17 @@ kernel void render(SCENE_PARAMETERS, global float *slots, uint first_item, uint 
         retire(slots, &path, live & !go_on);
         live = go_on;
     }
+}
+
+// Marks the slots of items that were not rendered (an interrupted pass) as empty.
+kernel void clear(global const Settings *settings, global float *slots, uint first_item, uint items, uint tile_width,
+                  uint tile_height, uint chunks, uint chunk_samples, uint pass_first, uint pass_samples) {
+    Queue q = queue_of(settings, first_item + (uint)get_global_id(0), items, tile_width, tile_height, chunks, chunk_samples,
+                       pass_first, pass_samples);
+    for (uint y = q.top; y < q.bottom; y++)
+        for (uint x = q.left; x < q.right; x++)
+            for (uint s = 0; s < q.samples; s++)
+                slots[3 * ((ulong)(y * settings->width + x) * pass_samples + (q.first_sample - pass_first) + s)] = as_float(SLOT_EMPTY);
 }
 
 // One sample's colour of each lane's pixel.
