@@ -5,14 +5,15 @@
 namespace opal {
 
 namespace {
-bool is_quiet = false;
+bool quiet_chosen = false;
 std::vector<std::string> kept_warnings;
 } // namespace
 
-void set_quiet(bool quiet) { is_quiet = quiet; }
+void set_quiet(bool quiet) { quiet_chosen = quiet; }
+bool is_quiet() { return quiet_chosen; }
 
 void info(const std::string &line) {
-    if (!is_quiet)
+    if (!quiet_chosen)
         fmt::print(stderr, "{}\n", line);
 }
 

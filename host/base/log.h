@@ -7,6 +7,7 @@
 namespace opal {
 
 void set_quiet(bool quiet);             // --quiet silences info, never warnings
+bool is_quiet();
 void info(const std::string &line);
 void warn(const std::string &line);     // prints "warning: ..."
 const std::vector<std::string> &warnings();

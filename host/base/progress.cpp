@@ -1,0 +1,73 @@
+#include "base/progress.h"
+
+#include "base/log.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <unistd.h>
+
+namespace opal {
+
+namespace {
+
+constexpr double bar_period = 0.1, line_period = 5; // seconds
+constexpr const char *clear_line = "\r\033[K";
+
+double since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+} // namespace
+
+std::string duration_text(double seconds) {
+    if (seconds < 9.95)
+        return fmt::format("{:.1f} s", seconds);
+    const long long whole = std::llround(std::min(seconds, 1e15));
+    if (whole < 60)
+        return fmt::format("{} s", whole);
+    if (whole < 3600)
+        return fmt::format("{} min {} s", whole / 60, whole % 60);
+    return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
+}
+
+std::string count_text(double count) {
+    static const char *const units[] = {"", " k", " M", " G", " T"};
+    int unit = 0;
+    for (; count >= 1000 && unit < 4; ++unit)
+        count /= 1000;
+    return fmt::format("{:.3g}{}", count, units[unit]);
+}
+
+std::string progress_line(const std::string &what, const std::string &unit, double done, double total, double seconds, bool bar) {
+    const double share = total > 0 ? std::clamp(done / total, 0.0, 1.0) : 1;
+    std::string line = fmt::format("{} {:3.0f} %", what, std::floor(100 * share));
+    if (bar) {
+        constexpr int width = 30;
+        const int filled = static_cast<int>(share * width);
+        line += fmt::format(" [{:<{}}]", std::string(static_cast<size_t>(filled), '#'), width);
+    }
+    if (done > 0 && seconds > 0)
+        line += fmt::format("  {} {}/s  {} left", count_text(done / seconds), unit, duration_text(seconds * (total - done) / done));
+    return line;
+}
+
+Progress::Progress(std::string what, double total, std::string unit)
+    : what_(std::move(what)), unit_(std::move(unit)), total_(total), bar_(isatty(STDERR_FILENO)), silent_(is_quiet()),
+      start_(Clock::now()), said_(start_) {}
+
+Progress::~Progress() {
+    if (bar_ && !silent_)
+        fmt::print(stderr, "{}", clear_line);
+}
+
+void Progress::update(double done) {
+    if (silent_ || since(said_) < (bar_ ? bar_period : line_period))
+        return;
+    said_ = Clock::now();
+    const std::string line = progress_line(what_, unit_, done, total_, since(start_), bar_);
+    fmt::print(stderr, "{}{}{}", bar_ ? clear_line : "", line, bar_ ? "" : "\n");
+}
+
+} // namespace opal
