@@ -79,7 +79,8 @@ struct SceneDescription {
     Camera camera;
     std::vector<Mesh> meshes;
     std::vector<PointLight> point_lights;
-    std::string integrator_type = "path_mis"; // as written, e.g. path_tracer_recursive
+    std::string integrator_type = "path_mis"; // as written, e.g. path_tracer_recursive; path_mis where there is none
+    bool university_dialect = false;           // that type is the 2022 course's: without <rfilter> the filter is a box
     Strategy strategy;
     bool normals_signed = false;
     SimpleLight simple_light;

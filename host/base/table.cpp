@@ -1,0 +1,56 @@
+#include "base/table.h"
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+
+namespace opal {
+
+namespace {
+
+// Edit distance with one row kept; upper and lower case are alike.
+size_t edit_distance(std::string_view a, std::string_view b) {
+    auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+    std::vector<size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), size_t(0));
+    for (size_t i = 0; i < a.size(); ++i) {
+        size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (size_t j = 0; j < b.size(); ++j) {
+            size_t replaced = diagonal + (lower(a[i]) != lower(b[j]));
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+        }
+    }
+    return row[b.size()];
+}
+
+} // namespace
+
+std::string joined(const std::vector<std::string> &names) {
+    std::string text;
+    for (const std::string &name : names)
+        text += (text.empty() ? "" : ", ") + name;
+    return text.empty() ? "none" : text;
+}
+
+std::string nearest_name(std::string_view name, const std::vector<std::string> &known) {
+    std::string nearest;
+    size_t least = name.size() / 2 + 1;
+    for (const std::string &candidate : known) {
+        size_t distance = edit_distance(name, candidate);
+        if (distance < least && distance < candidate.size()) {
+            least = distance;
+            nearest = candidate;
+        }
+    }
+    return nearest;
+}
+
+std::string unknown_name(std::string_view what, std::string_view name, const std::vector<std::string> &known) {
+    std::string nearest = nearest_name(name, known);
+    std::string hint = nearest.empty() ? "" : "did you mean '" + nearest + "'? ";
+    return "unknown " + std::string(what) + " '" + std::string(name) + "'; " + hint + "available: " + joined(known);
+}
+
+} // namespace opal

@@ -1,0 +1,36 @@
+// A look-up that fails with what was possible: "unknown bsdf 'difuse'; did you mean 'diffuse'? available: diffuse,
+// ...". Rows are any records with a member `name` that a string_view can be made from.
+#pragma once
+
+#include "base/error.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace opal {
+
+// The known name nearest by edit distance (Levenshtein 1966), or "" where none is near enough to be a slip of the pen.
+std::string nearest_name(std::string_view name, const std::vector<std::string> &known);
+
+std::string joined(const std::vector<std::string> &names); // "a, b, c"; "none" for no names
+
+// The sentence for a name that is not there; `what` says its kind: "bsdf", "property".
+std::string unknown_name(std::string_view what, std::string_view name, const std::vector<std::string> &known);
+
+template <class Rows> std::vector<std::string> names_of(const Rows &rows) {
+    std::vector<std::string> names;
+    for (const auto &row : rows)
+        names.emplace_back(row.name);
+    return names;
+}
+
+// The row of that name; throws Error(unknown_name(...)).
+template <class Rows> const auto &find_row(const Rows &rows, std::string_view what, std::string_view name) {
+    for (const auto &row : rows)
+        if (row.name == name)
+            return row;
+    throw Error(unknown_name(what, name, names_of(rows)));
+}
+
+} // namespace opal

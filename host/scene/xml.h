@@ -1,0 +1,59 @@
+// XML nodes that remember where they were written, so that every error can say file:line:col.
+#pragma once
+
+#include "scene/scene.h"
+
+#include <pugixml.hpp>
+
+#include <filesystem>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace opal {
+
+class XmlDocument;
+
+// An element. Valid as long as its document; cheap to copy.
+class XmlNode {
+public:
+    XmlNode(const XmlDocument &document, pugi::xml_node node) : document_(&document), node_(node) {}
+
+    std::string tag() const { return node_.name(); }
+    SourcePlace place() const; // of its '<'
+    std::string attribute(const char *name) const { return node_.attribute(name).value(); }
+    // The child elements in document order; text between them is an Error.
+    std::vector<XmlNode> children() const;
+    // Exactly these attributes, each once; anything else is an Error.
+    void require_attributes(std::initializer_list<const char *> names) const;
+    [[noreturn]] void fail(const std::string &message) const; // Error "file:line:col: message"
+
+private:
+    const XmlDocument *document_;
+    pugi::xml_node node_;
+};
+
+class XmlDocument {
+public:
+    // Reads and parses a file; throws Error with the place of what is malformed.
+    explicit XmlDocument(const std::filesystem::path &file);
+    // Parses text that is said to be in `file`.
+    XmlDocument(const std::filesystem::path &file, std::string text);
+    XmlDocument(const XmlDocument &) = delete;
+    XmlDocument &operator=(const XmlDocument &) = delete;
+
+    XmlNode root() const; // the one root element
+    // Line and column of a byte offset; columns count characters of UTF-8.
+    SourcePlace place(ptrdiff_t offset) const;
+    const std::string &text() const { return text_; }
+
+private:
+    std::string file_, text_;
+    pugi::xml_document document_;
+};
+
+// The whole file as bytes; throws Error that names the file.
+std::string read_file(const std::filesystem::path &file);
+
+} // namespace opal
