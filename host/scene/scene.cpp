@@ -1,14 +1,13 @@
 #include "scene/scene.h"
 
+#include <fmt/format.h>
+
 namespace opal {
 
 std::string SourcePlace::text() const {
-    std::string place = file;
-    if (line > 0)
-        place += ":" + std::to_string(line);
-    if (column > 0)
-        place += ":" + std::to_string(column);
-    return place;
+    if (line == 0)
+        return file;
+    return column == 0 ? fmt::format("{}:{}", file, line) : fmt::format("{}:{}:{}", file, line, column);
 }
 
 } // namespace opal
