@@ -2,6 +2,8 @@
 
 #include "scene/properties.h"
 
+#include <fmt/format.h>
+
 namespace opal {
 
 namespace {
@@ -78,7 +80,7 @@ Transform parse_transform(const XmlNode &node) {
         });
         result = operation.parse(child) * result;
         if (!child.children().empty())
-            child.children().front().fail("<" + child.tag() + "> holds nothing");
+            child.children().front().fail(fmt::format("<{}> holds nothing", child.tag()));
     }
     if (!invertible(result))
         node.fail("the transform is singular: it flattens space and has no inverse");

@@ -3,6 +3,8 @@
 #include "base/error.h"
 #include "base/table.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -59,14 +61,14 @@ void XmlNode::require_attributes(std::initializer_list<const char *> names) cons
     for (pugi::xml_attribute attribute : node_.attributes()) {
         std::string name = attribute.name();
         if (std::find(known.begin(), known.end(), name) == known.end())
-            fail(unknown_name("attribute of <" + tag() + ">", name, known));
+            fail(unknown_name(fmt::format("attribute of <{}>", tag()), name, known));
         if (std::find(seen.begin(), seen.end(), name) != seen.end())
-            fail("<" + tag() + "> has the attribute '" + name + "' twice");
+            fail(fmt::format("<{}> has the attribute '{}' twice", tag(), name));
         seen.push_back(name);
     }
     for (const std::string &name : known)
         if (std::find(seen.begin(), seen.end(), name) == seen.end())
-            fail("<" + tag() + "> lacks the attribute '" + name + "'");
+            fail(fmt::format("<{}> lacks the attribute '{}'", tag(), name));
 }
 
 void XmlNode::fail(const std::string &message) const { fail_at(place(), message); }
