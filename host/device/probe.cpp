@@ -65,7 +65,7 @@ bool read_all(Probe &probe, Clock::time_point deadline) {
     for (;;) {
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
         pollfd wait{probe.pipe, POLLIN, 0};
-        const int ready = left > 0 ? poll(&wait, 1, static_cast<int>(left)) : 0;
+        const int ready = poll(&wait, 1, static_cast<int>(std::max<long long>(left, 0)));
         if (ready < 0 && errno == EINTR)
             continue;
         if (ready <= 0)
