@@ -1,0 +1,122 @@
+"""Writes OBJ files and Nori XML scenes."""
+from scenekit.vec import sub
+
+LICENCE = "Opal's own work, MIT licence; written by scripts/make_scenes.py."
+
+
+def number(x):
+    """Six decimals at most, no trailing zeros: the same text on every machine."""
+    text = f"{x:.6f}".rstrip("0").rstrip(".")
+    return "0" if text in ("", "-0") else text
+
+
+def triple(v):
+    return " ".join(number(x) for x in v)
+
+
+def obj_text(surface, comment):
+    short = lambda v: " ".join(number(round(x, 5)) for x in v)
+    corner = lambda c: str(c[0] + 1) if c[1] is None else f"{c[0] + 1}//{c[1] + 1}"
+    lines = [f"# {comment}", f"# {LICENCE}"]
+    lines += ["v " + short(p) for p in surface.positions]
+    lines += ["vn " + short(n) for n in surface.normals]
+    lines += ["f " + " ".join(corner(c) for c in face) for face in surface.faces]
+    return "\n".join(lines) + "\n"
+
+
+# Materials and transforms: (tag, attributes) trees, an attribute list ends with its children.
+def color(name, value):
+    return f'<color name="{name}" value="{triple(value)}"/>'
+
+
+def real(name, value):
+    return f'<float name="{name}" value="{number(value)}"/>'
+
+
+def boolean(name, value):
+    return f'<boolean name="{name}" value="{str(value).lower()}"/>'
+
+
+def bsdf(kind, *properties):
+    return (f'<bsdf type="{kind}">', *properties) if properties else f'<bsdf type="{kind}"/>'
+
+
+def diffuse(r, g, b, use_cosine=True):
+    return bsdf("diffuse", color("albedo", (r, g, b)), *([boolean("use_cosine", True)] if use_cosine else []))
+
+
+def microfacet(alpha, kd, int_ior=None):
+    index = [real("intIOR", int_ior), real("extIOR", 1)] if int_ior else []
+    return bsdf("microfacet", real("alpha", alpha), *index, color("kd", kd))
+
+
+def phong(kd, ks, pd, n):
+    return bsdf("phong", color("kd", kd), color("ks", ks), real("pd", pd), real("n", n))
+
+
+def translate(*v):
+    return f'<translate value="{triple(v)}"/>'
+
+
+def scaling(*v):
+    return f'<scale value="{triple(v if len(v) == 3 else v * 3)}"/>'
+
+
+def rotate(axis, angle):
+    return f'<rotate axis="{triple(axis)}" angle="{number(angle)}"/>'
+
+
+def path_tracer(nee=True, mis=True):
+    return ('<integrator type="path_tracer_recursive">', boolean("rr", True), boolean("nee", nee), boolean("mis", mis))
+
+
+class Scene:
+    """A scene in the order it is written: what it is for, how it is rendered, the camera, then its meshes."""
+
+    def __init__(self, name, purpose, integrator=None, spp=64):
+        self.name, self.purpose, self.meshes = name, purpose, []
+        self.head = [integrator or path_tracer(),
+                     ('<sampler type="independent">', f'<integer name="sampleCount" value="{spp}"/>')]
+
+    def camera(self, origin, target, fov, width, height, far=None):
+        self.head.append(('<camera type="perspective">', f'<integer name="width" value="{width}"/>',
+                          f'<integer name="height" value="{height}"/>', real("fov", fov),
+                          *([real("farClip", far)] if far else []),
+                          ('<transform name="toWorld">',
+                           f'<lookat origin="{triple(origin)}" target="{triple(target)}" up="0 1 0"/>')))
+
+    def mesh(self, obj, material, *transform, radiance=None):
+        """An OBJ of scenes/meshes, moved by the transforms in their order."""
+        self._add('<mesh type="obj">', [f'<string name="filename" value="meshes/{obj}.obj"/>'], material, transform, radiance)
+
+    def parallelogram(self, origin, u, v, material, radiance=None):
+        """Front and emitting side is u x v."""
+        shape = [f'<point name="origin" value="{triple(origin)}"/>', f'<vector name="u" value="{triple(u)}"/>',
+                 f'<vector name="v" value="{triple(v)}"/>']
+        self._add('<mesh type="parallelogram">', shape, material, (), radiance)
+
+    def quad(self, a, b, d, material, radiance=None):
+        """The parallelogram with corner a and its neighbours b and d; the front sees a, b, d counter-clockwise."""
+        self.parallelogram(a, sub(b, a), sub(d, a), material, radiance)
+
+    def _add(self, tag, shape, material, transform, radiance):
+        parts = [tag, *shape]
+        if transform:
+            parts.append(('<transform name="toWorld">', *transform))
+        parts.append(material)
+        if radiance:
+            parts.append(('<emitter type="area">', color("radiance", radiance)))
+        self.meshes.append(tuple(parts))
+
+    def text(self):
+        comment = "\n".join("     " + line for line in self.purpose.strip().splitlines()).strip()
+        body = "".join(_xml(node, 1) for node in [*self.head, *self.meshes])
+        return f'<?xml version="1.0"?>\n<!-- {comment}\n     {LICENCE} -->\n<scene>\n{body}</scene>\n'
+
+
+def _xml(node, depth):
+    indent = "    " * depth
+    if isinstance(node, str):
+        return f"{indent}{node}\n"
+    tag = node[0].split()[0].strip("<>")
+    return f"{indent}{node[0]}\n" + "".join(_xml(child, depth + 1) for child in node[1:]) + f"{indent}</{tag}>\n"
