@@ -16,7 +16,8 @@ namespace opal {
 #define OPAL_TINY_VERTICES 96        // ... and up to this many distinct vertices
 
 // A node of the 8-wide tree: the boxes of its children, one axis and side a row, and what they are.
-// An unused child has lo = +inf, hi = -inf. A child is a node's index, or OPAL_LEAF | index of a block.
+// An unused child is OPAL_NONE and has lo = +inf, hi = -inf: a slab test misses it that picks near and far by the
+// direction's signs (one that sorts the two distances would hit). A child is a node's index, or OPAL_LEAF | index of a block.
 typedef struct {
     float lo[3][8];
     float hi[3][8];

@@ -3,7 +3,6 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
-#include <span>
 #include <thread>
 
 namespace opal {
@@ -123,18 +122,6 @@ Split split_swept(References set) {
     return best;
 }
 
-// Halves the set along the longest axis of its middles.
-Split split_halved(References set) {
-    const Box middles = middles_of(set);
-    int axis = 0;
-    for (int other = 1; other < 3; other++)
-        if (middles.hi[other] - middles.lo[other] > middles.hi[axis] - middles.lo[axis]) axis = other;
-    const std::size_t half = set.size() / 2;
-    std::nth_element(set.begin(), set.begin() + std::ptrdiff_t(half), set.end(),
-                     [axis](const Reference &a, const Reference &b) { return a.box.middle2(axis) < b.box.middle2(axis); });
-    return {0, axis, half, 0};
-}
-
 class Builder {
 public:
     explicit Builder(BinaryTree &goal)
@@ -181,12 +168,22 @@ private:
         Split found;
         if (depth < DEEPEST_SAH) found = set.size() <= SWEEP_SIZE ? split_swept(set) : split_binned(set);
         if (set.size() <= BLOCK_SIZE) return found.cost < box.half_area() ? found.left : 0;
-        if (found.axis < 0) found = split_halved(set); // too deep, or all middles are one
-        return found.left;
+        return found.axis < 0 ? halve(set) : found.left; // too deep, or all middles are one
     }
 };
 
 } // namespace
+
+std::size_t halve(References set) {
+    const Box middles = middles_of(set);
+    int axis = 0;
+    for (int other = 1; other < 3; other++)
+        if (middles.hi[other] - middles.lo[other] > middles.hi[axis] - middles.lo[axis]) axis = other;
+    const std::size_t half = (set.size() + 1) / 2;
+    std::nth_element(set.begin(), set.begin() + std::ptrdiff_t(half), set.end(),
+                     [axis](const Reference &a, const Reference &b) { return a.box.middle2(axis) < b.box.middle2(axis); });
+    return half;
+}
 
 BinaryTree build_binary_tree(const TriangleSoup &soup) {
     assert(!soup.corners.empty());
