@@ -22,6 +22,7 @@ constexpr const char *hidden = ""; // no help: not listed
 
 const Command commands[] = {
     {"devices", "List every OpenCL platform and device, and which one `render` takes", setup_devices},
+    {"inspect", "Show what a scene holds, and what its kernel will be compiled with and why", setup_inspect},
     {"probe-platform", hidden, setup_probe_platform},
 };
 

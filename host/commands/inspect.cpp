@@ -1,0 +1,160 @@
+#include "commands/commands.h"
+#include "commands/options.h"
+#include "device/buffers.h"
+#include "flatten/flat_scene.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace opal {
+
+namespace {
+
+struct InspectOptions {
+    SceneOptions scene;
+    bool cl = false;
+};
+
+// inspect asks no device, so "auto" is what a CPU device on this machine would say of its float vectors.
+int host_vector_width() {
+#if defined(__x86_64__)
+    return __builtin_cpu_supports("avx512f") ? 16 : __builtin_cpu_supports("avx2") ? 8 : 4;
+#else
+    return 4;
+#endif
+}
+
+template <class... Arguments> void row(const char *name, fmt::format_string<Arguments...> text, Arguments &&...arguments) {
+    fmt::print("{:<12}{}\n", name, fmt::format(text, std::forward<Arguments>(arguments)...));
+}
+
+std::string color_text(const Color &c) { return fmt::format("{:g} {:g} {:g}", c[0], c[1], c[2]); }
+
+const char *bsdf_name(unsigned kind) {
+#define OPAL_NAME(name) #name,
+    static const char *const names[] = {OPAL_BSDFS(OPAL_NAME)};
+#undef OPAL_NAME
+    return names[kind];
+}
+
+std::string filter_text(const Filter &filter) {
+#define OPAL_NAME(name) #name,
+    static const char *const names[] = {OPAL_FILTERS(OPAL_NAME)};
+#undef OPAL_NAME
+    return fmt::format("{}, radius {:g} pixels", names[filter.kind], filter.radius);
+}
+
+// "3 diffuse, 1 mirror"
+std::string counts_text(const std::map<std::string, size_t> &counts) {
+    std::vector<std::string> parts;
+    for (const auto &[name, count] : counts)
+        parts.push_back(fmt::format("{} {}", count, name));
+    return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, ", "));
+}
+
+void print_mesh(const Mesh &mesh) {
+    const auto *triangles = std::get_if<TriangleMesh>(&mesh.shape);
+    row("", "{}: {}, {}{}", mesh.name, triangles ? fmt::format("{} triangles", triangles->triangles.size()) : "parallelogram",
+        bsdf_name(mesh.bsdf.record.kind), mesh.radiance ? ", emits " + color_text(*mesh.radiance) + " W/(m^2 sr)" : "");
+}
+
+void print_scene(const SceneDescription &scene, const FlatScene &flat) {
+    const Camera &camera = scene.camera;
+    row("scene", "{}", scene.file.string());
+    row("camera", "{} x {} pixels, {:g} degrees wide, near {:g}, far {:g}", camera.width, camera.height, camera.fov,
+        camera.near_clip, camera.far_clip);
+    row("filter", "{}{}", filter_text(camera.filter), camera.filter.given ? "" : " (the dialect's default)");
+    row("samples", "{} a pixel", scene.spp);
+
+    std::map<std::string, size_t> bsdfs, emitters;
+    for (const Mesh &mesh : scene.meshes)
+        ++bsdfs[bsdf_name(mesh.bsdf.record.kind)];
+#define OPAL_NAME(name) #name,
+    static const char *const emitter_names[] = {OPAL_EMITTERS(OPAL_NAME)};
+#undef OPAL_NAME
+    for (const EmitterRecord &emitter : flat.emitters)
+        ++emitters[emitter_names[emitter.kind]];
+    row("bsdfs", "{} ({} different)", counts_text(bsdfs), flat.bsdfs.size());
+    row("emitters", "{}", counts_text(emitters));
+    for (const PointLight &light : scene.point_lights)
+        row("", "point light, {} W", color_text(light.power));
+    row("meshes", "{}, {} triangles", scene.meshes.size(), flat.triangles.size());
+    for (const Mesh &mesh : scene.meshes)
+        print_mesh(mesh);
+}
+
+void print_strategy(const SceneDescription &scene, int lanes) {
+    const Strategy &strategy = scene.strategy;
+    fmt::print("\nstrategy, after overrides (the scene's integrator: {})\n", scene.integrator_type);
+    for (int axis = 0; axis < AXIS_COUNT; ++axis)
+        fmt::print("  {:<18}{}\n", axes()[axis].name, axes()[axis].choices[strategy[axis]].name);
+    fmt::print("  {:<18}{}\n", "max-depth", strategy.max_depth == no_limit ? "none" : std::to_string(strategy.max_depth));
+    fmt::print("  {:<18}{}\n  {:<18}{:g}\n", "rr-depth", strategy.rr_depth, "rr-prob", strategy.rr_prob);
+    fmt::print("  {:<18}{}\n", "math", strategy.math == MathMode::fast ? "fast" : "precise");
+    fmt::print("  {:<18}{}{}\n", "lanes", lanes,
+               strategy.lanes ? "" : " (auto: what a CPU device here would take; no device was asked, a GPU takes 1)");
+    fmt::print("  {:<18}{}\n", "specialise", strategy.specialise ? "on" : "off");
+}
+
+void print_buffers(const FlatScene &flat) {
+    unsigned long long all = 0;
+    fmt::print("\nbuffers\n");
+    const auto table = [&](const char *name, const auto &rows) {
+        const unsigned long long bytes = rows.size() * sizeof(rows[0]);
+        all += bytes;
+        fmt::print("  {:<18}{:>10} rows {:>12}\n", name, rows.size(), bytes_text(bytes));
+    };
+    table("nodes", flat.nodes);
+    table("blocks", flat.blocks);
+    table("triangles", flat.triangles);
+    table("normals", flat.normals);
+    table("tiny vertices", flat.tiny_vertices);
+    table("tiny triangles", flat.tiny_triangles);
+    table("meshes", flat.meshes);
+    table("bsdfs", flat.bsdfs);
+    table("emitters", flat.emitters);
+    table("light triangles", flat.light_triangles);
+    fmt::print("  {:<18}{:>15} {:>12}\n", "in all", "", bytes_text(all));
+}
+
+void print_features(const Features &features) {
+    fmt::print("\nfeatures of the kernel\n");
+    for (const Feature &feature : features.list)
+        fmt::print("  {:<22}{:<5}{}\n", feature.name, feature.on ? "in" : "out", feature.reason);
+    fmt::print("\naxes of the kernel\n");
+    for (int axis = 0; axis < AXIS_COUNT; ++axis) {
+        const int choice = features.axes[axis];
+        fmt::print("  {:<22}{} ({})\n", axes()[axis].name, choice < 0 ? "at run time" : axes()[axis].choices[choice].name,
+                   features.axis_reasons[axis]);
+    }
+}
+
+int run_inspect(const InspectOptions &options) {
+    const SceneDescription scene = load_scene(options.scene);
+    const int lanes = scene.strategy.lanes ? scene.strategy.lanes : host_vector_width();
+    const FlatScene flat = flatten(scene, lanes);
+    if (options.cl) {
+        BuildOptions build;
+        build.lanes = lanes;
+        build.math = scene.strategy.math;
+        fmt::print("{}", program_text(flat.features, build, load_sources(options.scene)));
+        return 0;
+    }
+    print_scene(scene, flat);
+    print_strategy(scene, lanes);
+    print_buffers(flat);
+    print_features(flat.features);
+    return 0;
+}
+
+} // namespace
+
+RunCommand setup_inspect(CLI::App &app) {
+    auto options = std::make_shared<InspectOptions>();
+    add_scene_options(app, options->scene);
+    app.add_flag("--cl", options->cl, "Print the text of the kernel's program instead");
+    return [options] { return run_inspect(*options); };
+}
+
+} // namespace opal
