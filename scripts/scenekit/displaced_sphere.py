@@ -46,7 +46,8 @@ def scene(name, triangles):
                    path_tracer(), 16)
     result.camera((0, 1.2, 4.4), (0, -0.05, 0), 40, 640, 480)
     result.parallelogram((-8, -1.2, 8), (16, 0, 0), (0, 0, -16), diffuse(0.5, 0.5, 0.5))
+    result.parallelogram((-8, -1.2, -3), (16, 0, 0), (0, 10, 0), diffuse(0.3, 0.35, 0.4))
     result.mesh(name, diffuse(0.7, 0.6, 0.45))
-    result.parallelogram((-2.5, 3, 1), (1.5, 0, 0), (0.3, 0.3, 1.5), BLACK, (14, 13, 12))
-    result.parallelogram((1.8, 2.2, 1.6), (1, 0, -0.4), (0.2, -0.4, 0.8), BLACK, (9, 10, 12))
+    result.parallelogram((-2.5, 3, 1), (1.5, 0, 0), (0.3, 0.3, 1.5), BLACK, (30, 28, 26))
+    result.parallelogram((1.8, 2.2, 1.6), (1, 0, -0.4), (0.2, -0.4, 0.8), BLACK, (20, 22, 26))
     return result
