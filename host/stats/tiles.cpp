@@ -1,0 +1,156 @@
+#include "stats/tiles.h"
+
+#include "stats/special.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace opal::stats {
+namespace {
+
+bool fits(const Estimate &e) {
+    size_t pixels = size_t(e.width) * size_t(e.height);
+    auto whole = [&](std::span<const float> layer) { return layer.size() == pixels; };
+    return pixels > 0 && !e.mean.empty() && e.mean.size() == e.variance.size() &&
+           std::all_of(e.mean.begin(), e.mean.end(), whole) && std::all_of(e.variance.begin(), e.variance.end(), whole);
+}
+
+// Mean over the box, the variance of that mean, and Satterthwaite's sum of v^2 / dof.
+struct BoxSums {
+    double mean = 0, variance = 0, variance_squares = 0;
+};
+
+BoxSums sum_box(const Estimate &e, size_t channel, const PixelBox &box) {
+    CompensatedSum mean, variance, squares;
+    bool negative = false;
+    for (int y = box.y; y < box.y + box.height; ++y)
+        for (int x = box.x; x < box.x + box.width; ++x) {
+            size_t i = size_t(y) * size_t(e.width) + size_t(x);
+            double v = e.variance[channel][i];
+            negative = negative || v < 0;
+            mean.add(e.mean[channel][i]);
+            variance.add(v);
+            squares.add(v * v / e.dof);
+        }
+    double n = double(box.width) * box.height;
+    return {mean.value() / n, negative ? NAN : variance.value() / (n * n), squares.value() / (n * n * n * n)};
+}
+
+TestResult compare_box(const Estimate &a, const Estimate &b, size_t channel, const PixelBox &box,
+                       const TileOptions &o) {
+    BoxSums sa = sum_box(a, channel, box), sb = sum_box(b, channel, box);
+    double variance = sa.variance + sb.variance, squares = sa.variance_squares + sb.variance_squares;
+    double dof = squares == 0 ? std::numeric_limits<double>::infinity() : variance / squares * variance;
+    double scale = std::max(std::abs(sa.mean), std::abs(sb.mean));
+    return difference_test(sa.mean - sb.mean, std::sqrt(o.variance_inflation * variance), dof, scale, o.relative_floor);
+}
+
+// z of the same two-sided p and sign; a tile that could not be judged (NaN) is infinitely bad.
+double equivalent_z(const TestResult &test) {
+    return std::copysign(-normal_quantile(test.p_value / 2), std::isnan(test.statistic) ? 1 : test.statistic);
+}
+
+PixelBox tile_box(const TileTest &t, const Estimate &e, size_t tile) {
+    int x = int(tile % size_t(t.columns)) * t.size, y = int(tile / size_t(t.columns)) * t.size;
+    return {x, y, std::min(t.size, e.width - x), std::min(t.size, e.height - y)};
+}
+
+PixelBox join(const PixelBox &a, const PixelBox &b) {
+    int x = std::min(a.x, b.x), y = std::min(a.y, b.y);
+    return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
+}
+
+// The tiles connected with `start` among those not `seen` that are significant with its sign.
+std::vector<size_t> flood(const TileTest &t, size_t channel, size_t start, double significance,
+                          std::vector<bool> &seen) {
+    size_t tiles = size_t(t.columns) * size_t(t.rows), columns = size_t(t.columns), base = channel * tiles;
+    std::vector<size_t> found = {start};
+    seen[start] = true;
+    auto visit = [&](bool exists, size_t tile) {
+        if (exists && !seen[tile] && t.p[base + tile] < significance &&
+            std::signbit(t.z[base + tile]) == std::signbit(t.z[base + start])) {
+            seen[tile] = true;
+            found.push_back(tile);
+        }
+    };
+    for (size_t i = 0; i < found.size(); ++i) {
+        size_t tile = found[i], column = tile % columns;
+        visit(column > 0, tile - 1);
+        visit(column + 1 < columns, tile + 1);
+        visit(tile >= columns, tile - columns);
+        visit(tile + columns < tiles, tile + columns);
+    }
+    return found;
+}
+
+Region describe(const TileTest &t, const Estimate &a, const Estimate &b, size_t channel,
+                const std::vector<size_t> &tiles) {
+    Region region{channel, tile_box(t, a, tiles[0]), int(tiles.size()), 0, 0, 0};
+    double pixels = 0;
+    for (size_t tile : tiles) {
+        PixelBox box = tile_box(t, a, tile);
+        double n = double(box.width) * box.height;
+        region.box = join(region.box, box);
+        region.statistic += t.z[channel * size_t(t.columns) * size_t(t.rows) + tile] / std::sqrt(double(tiles.size()));
+        region.mean_a += n * sum_box(a, channel, box).mean;
+        region.mean_b += n * sum_box(b, channel, box).mean;
+        pixels += n;
+    }
+    region.mean_a /= pixels;
+    region.mean_b /= pixels;
+    return region;
+}
+
+Region largest_region(const TileTest &t, const Estimate &a, const Estimate &b, double significance) {
+    Region largest;
+    size_t tiles = size_t(t.columns) * size_t(t.rows);
+    for (size_t channel = 0; channel < t.channels; ++channel) {
+        std::vector<bool> seen(tiles);
+        for (size_t start = 0; start < tiles; ++start) {
+            if (seen[start] || !(t.p[channel * tiles + start] < significance))
+                continue;
+            Region region = describe(t, a, b, channel, flood(t, channel, start, significance, seen));
+            if (region.tiles > largest.tiles ||
+                (region.tiles == largest.tiles && std::abs(region.statistic) > std::abs(largest.statistic)))
+                largest = region;
+        }
+    }
+    return largest;
+}
+
+} // namespace
+
+TileTest tile_test(const Estimate &a, const Estimate &b, const TileOptions &options) {
+    TileTest t;
+    if (!fits(a) || !fits(b) || a.width != b.width || a.height != b.height || a.mean.size() != b.mean.size()) {
+        t.reason = "the images differ in size or channels, or lack variances";
+        return t;
+    }
+    t.size = options.size;
+    t.columns = (a.width + t.size - 1) / t.size;
+    t.rows = (a.height + t.size - 1) / t.size;
+    t.channels = a.mean.size();
+    size_t tiles = size_t(t.columns) * size_t(t.rows);
+    double smallest = 1;
+    for (size_t channel = 0; channel < t.channels; ++channel) {
+        t.whole.push_back(compare_box(a, b, channel, {0, 0, a.width, a.height}, options));
+        smallest = std::min(smallest, t.whole.back().p_value);
+        for (size_t tile = 0; tile < tiles; ++tile) {
+            TestResult test = compare_box(a, b, channel, tile_box(t, a, tile), options);
+            t.z.push_back(equivalent_z(test));
+            t.p.push_back(test.p_value);
+            smallest = std::min(smallest, test.p_value);
+            if (t.z.size() == 1 || std::abs(t.z.back()) > std::abs(t.worst_z)) {
+                t.worst_channel = channel;
+                t.worst_tile = tile_box(t, a, tile);
+                t.worst_z = t.z.back();
+            }
+        }
+    }
+    t.p_value = sidak_p(smallest, double(t.channels * (tiles + 1)));
+    t.region = largest_region(t, a, b, options.region_significance);
+    return t;
+}
+
+} // namespace opal::stats

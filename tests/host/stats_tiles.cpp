@@ -1,0 +1,145 @@
+// The test of images: one picture's estimates pass as often as stated, a small or a local bias is found and named.
+#include "stats/tiles.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+using namespace opal::stats;
+
+namespace {
+
+constexpr int width = 60, height = 44, spp = 16; // the last tiles are cut
+constexpr double level = 1e-3;
+
+struct Picture {
+    std::vector<std::vector<float>> mean, variance;
+    Estimate estimate() const {
+        Estimate e{width, height, {}, {}, spp - 1};
+        e.mean.assign(mean.begin(), mean.end());
+        e.variance.assign(variance.begin(), variance.end());
+        return e;
+    }
+};
+
+// Brightness falls by 1e6 from left to right; gamma-distributed samples, standard deviation 1/2 of the mean.
+double truth(int x) { return std::pow(10.0, -6.0 * x / width); }
+
+template <class Bias> Picture render(unsigned seed, Bias bias) {
+    std::mt19937_64 rng(seed);
+    std::gamma_distribution<double> gamma(4, 0.25);
+    Picture picture;
+    for (int channel = 0; channel < 2; ++channel) {
+        picture.mean.emplace_back();
+        picture.variance.emplace_back();
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                Moments m;
+                for (int i = 0; i < spp; ++i)
+                    m.add(gamma(rng) * truth(x) * (1 + bias(channel, x, y)));
+                picture.mean.back().push_back(float(m.mean()));
+                picture.variance.back().push_back(float(m.variance_of_mean()));
+            }
+    }
+    return picture;
+}
+
+Picture render(unsigned seed) {
+    return render(seed, [](int, int, int) { return 0.0; });
+}
+
+} // namespace
+
+TEST_CASE("two estimates of one picture agree as often as stated", "[stats_tiles]") {
+    int rejected = 0, doubled = 0;
+    std::vector<double> whole;
+    for (unsigned seed = 0; seed < 200; ++seed) {
+        Picture a = render(2 * seed), b = render(2 * seed + 1);
+        TileTest t = tile_test(a.estimate(), b.estimate());
+        rejected += t.rejected(0.05);
+        whole.push_back(t.whole[0].p_value);
+        for (Picture *p : {&a, &b}) // the negative control: half the variance
+            for (auto &layer : p->variance)
+                for (float &v : layer)
+                    v /= 2;
+        doubled += tile_test(a.estimate(), b.estimate()).rejected(0.05);
+    }
+    CHECK_FALSE(binomial_test(rejected, 200, 0.05).rejected(level));
+    CHECK(binomial_test(doubled, 200, 0.05).rejected(level));
+    CHECK_FALSE(ks_uniform_test(whole).rejected(level));
+}
+
+TEST_CASE("a bias of 2 % everywhere is seen by the whole", "[stats_tiles]") {
+    Picture a = render(1000), b = render(1001, [](int, int, int) { return 0.02; });
+    TileTest t = tile_test(a.estimate(), b.estimate());
+    CHECK(t.rejected(level));
+    CHECK(t.whole[0].rejected(level));
+}
+
+TEST_CASE("a bias in a dark corner is found and named", "[stats_tiles]") {
+    auto corner = [](int channel, int x, int y) {
+        return channel == 1 && x >= 40 && x < 56 && y >= 8 && y < 24 ? 0.3 : 0;
+    };
+    Picture a = render(2000), b = render(2001, corner);
+    TileTest t = tile_test(a.estimate(), b.estimate());
+    CHECK(t.rejected(level));
+    CHECK_FALSE(t.whole[1].rejected(level)); // 1e-4 of the light: the whole cannot know
+    CHECK(t.columns == 8);
+    CHECK(t.rows == 6);
+    CHECK(t.worst_channel == 1);
+    CHECK(t.worst_z < -5);
+    CHECK(t.region.channel == 1);
+    CHECK(t.region.tiles == 4);
+    CHECK(t.region.box.x == 40);
+    CHECK(t.region.box.y == 8);
+    CHECK(t.region.box.width == 16);
+    CHECK(t.region.box.height == 16);
+    CHECK(t.region.mean_b / t.region.mean_a == Approx(1.3).epsilon(0.05));
+    CHECK(t.region.statistic < -10);
+}
+
+TEST_CASE("a variance of 0 has a relative floor", "[stats_tiles]") {
+    Picture a = render(3000);
+    for (int channel = 0; channel < 2; ++channel)
+        for (int i = 0; i < width * height; ++i) {
+            a.mean[channel][i] = float(truth(i % width));
+            a.variance[channel][i] = 0;
+        }
+    Picture same = a, off = a;
+    CHECK(tile_test(a.estimate(), same.estimate()).p_value == 1);
+    for (int i = 0; i < width * height; ++i)
+        if (i % width >= 56) // the darkest column of tiles, 1e-6 of the brightest
+            off.mean[0][i] *= 1.001f;
+    TileTest t = tile_test(a.estimate(), off.estimate());
+    CHECK(t.rejected(level));
+    CHECK(t.worst_tile.x == 56);
+    CHECK(t.region.tiles == 6);
+}
+
+TEST_CASE("NaN, negative variances and images that don't fit are rejected", "[stats_tiles]") {
+    Picture a = render(4000), b = render(4001);
+    for (float bad : {NAN, INFINITY}) {
+        Picture c = b;
+        c.mean[1][width * 20 + 33] = bad;
+        TileTest t = tile_test(a.estimate(), c.estimate());
+        CHECK(t.p_value == 0);
+        CHECK(t.worst_channel == 1);
+        CHECK(t.worst_tile.x == 32);
+        CHECK(t.worst_tile.y == 16);
+    }
+    for (float bad : {NAN, -1.0f}) {
+        Picture c = b;
+        c.variance[0][5] = bad;
+        CHECK(tile_test(a.estimate(), c.estimate()).p_value == 0);
+    }
+    Estimate smaller = b.estimate(), fewer = b.estimate(), bare = b.estimate(), single = b.estimate();
+    smaller.height -= 1;
+    fewer.mean.pop_back(), fewer.variance.pop_back();
+    bare.variance.clear();
+    single.dof = 0;
+    for (const Estimate &e : {smaller, fewer, bare, Estimate{}}) {
+        CHECK(tile_test(a.estimate(), e).p_value == 0);
+        CHECK_FALSE(tile_test(a.estimate(), e).reason.empty());
+    }
+    CHECK(tile_test(a.estimate(), single).p_value == 0);
+}
