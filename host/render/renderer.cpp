@@ -3,6 +3,7 @@
 #include "render/scene_buffers.h"
 
 #include <algorithm>
+#include <chrono>
 
 namespace opal {
 
@@ -63,6 +64,19 @@ Renderer::Renderer(const Device &device, const FlatScene &scene, const RenderOpt
             gather_kernel_.setArg(place++, buffer);
         return 0;
     });
+    compile_seconds_ += warm_up();
+}
+
+// Drivers finish compiling at the first launch of a kernel's shape: launches in which every work-item is past the end.
+double Renderer::warm_up() {
+    const auto start = std::chrono::steady_clock::now();
+    with_device(device_.info, [&] {
+        render_kernel_.setArg(cl_uint(scene_.size()) + 1, cl_uint(0));
+        set_pass_arguments(render_kernel_, cl_uint(scene_.size()) + 2, 0, 0);
+        return launch(render_kernel_, shape_.items_a_launch);
+    });
+    kernel_seconds_ = 0;
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void Renderer::restart(unsigned seed, unsigned first_sample) {

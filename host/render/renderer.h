@@ -43,6 +43,7 @@ private:
         unsigned tiles, chunks; // work-items a pass: each tile's samples are cut into chunks
     };
     Shape shape_of_launches() const;
+    double warm_up();
     bool render_pass(unsigned samples, const Continue &go_on);
     void set_pass_arguments(cl::Kernel &kernel, cl_uint place, unsigned chunk_samples, unsigned pass_samples);
     double launch(const cl::Kernel &kernel, unsigned items);

@@ -1,0 +1,56 @@
+#include "render/report.h"
+
+#include "base/log.h"
+
+namespace opal {
+
+using nlohmann::json;
+
+json strategy_json(const SceneDescription &scene) {
+    const Strategy &s = scene.strategy;
+    json j;
+    for (int axis = 0; axis < AXIS_COUNT; axis++)
+        j[axes()[axis].name] = axes()[axis].choices[s[axis]].name;
+    j["integrator"] = scene.integrator_type;
+    j["rr-prob"] = s.rr_prob;
+    j["rr-depth"] = s.rr_depth;
+    j["max-depth"] = s.max_depth == no_limit ? json("none") : json(s.max_depth);
+    j["math"] = s.math == MathMode::fast ? "fast" : "precise";
+    j["specialise"] = s.specialise ? "on" : "off";
+    return j;
+}
+
+json report_json(const SceneDescription &scene, const DeviceInfo &device, int lanes, unsigned seed, const Film &film,
+                 const RenderSeconds &seconds) {
+    const FilmStatistics s = statistics_of(film);
+    json j;
+    j["scene"] = scene.file.string();
+    j["device"] = device.name;
+    j["driver"] = device.driver;
+    j["lanes"] = lanes;
+    j["strategy"] = strategy_json(scene);
+    j["width"] = film.width;
+    j["height"] = film.height;
+    j["spp"] = double(s.samples + s.invalid) / (double(film.width) * film.height);
+    j["seed"] = seed;
+    j["mean_rgb"] = s.mean_rgb;
+    j["mean_luminance"] = s.mean_luminance;
+    j["stderr_luminance"] = s.stderr_luminance;
+    j["invalid_samples"] = s.invalid;
+    j["invalid_places"] = json::array();
+    for (const InvalidSample &p : film.invalid_places)
+        j["invalid_places"].push_back({{"x", p.x}, {"y", p.y}, {"sample", p.sample}});
+    j["samples_per_second"] = seconds.render > 0 ? double(s.samples + s.invalid) / seconds.render : 0;
+    j["seconds"] = {{"load", seconds.load}, {"bvh", seconds.bvh}, {"compile", seconds.compile}, {"render", seconds.render}, {"write", seconds.write}};
+    j["warnings"] = warnings();
+    j["version"] = OPAL_VERSION;
+    return j;
+}
+
+void add_metadata(Image &image, const json &report, const std::string &command_line) {
+    for (const auto &[key, value] : report.items())
+        image.metadata["opal." + key] = value.is_string() ? value.get<std::string>() : value.dump();
+    image.metadata["opal.command_line"] = command_line;
+}
+
+} // namespace opal
