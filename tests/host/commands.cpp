@@ -40,7 +40,7 @@ void check_refused(const std::string &arguments, const std::string &reason) {
 
 TEST_CASE("Help and version are printed and succeed", "[commands]") {
     CHECK(run_shell(opal_binary + " --version").out == "opal " OPAL_VERSION "\n");
-    for (const char *arguments : {"--help", "devices --help", "inspect --help"}) {
+    for (const char *arguments : {"--help", "devices --help", "inspect --help", "render --help"}) {
         const Outcome outcome = run_shell(opal_binary + " " + arguments);
         CHECK(outcome.exit_code == 0);
         CHECK_THAT(outcome.out, Catch::Contains("Usage: opal"));
@@ -53,7 +53,7 @@ TEST_CASE("What is not understood is refused with what there is", "[commands]") 
     check_refused("rendre", "unknown command 'rendre'; available: ");
     check_refused("devices --jsno", "--jsno");
     check_refused("inspect", "SCENE.xml");
-    check_refused("inspect no-such.xml", "no-such.xml");
+    check_refused("no-such.xml", "no-such.xml");
 }
 
 TEST_CASE("inspect tells what a scene holds and why each feature is in or out", "[commands]") {
