@@ -1,0 +1,31 @@
+// Two images held against each other, and what is left on the disk when they disagree.
+#pragma once
+
+#include "image/image.h"
+#include "stats/tiles.h"
+
+#include <filesystem>
+
+namespace opal {
+
+// The layers R, G, B and variance.R, .G, .B as an estimate; it points into the image. `dof`: samples a pixel - 1, or
+// batches - 1. Error naming the layer that is missing.
+stats::Estimate estimate_of(const Image &image, double dof);
+
+// Values as colours for write_png: 0 white, +limit and above red, -limit and below blue, not finite magenta.
+Image false_colour(const std::vector<float> &values, int width, int height, double limit);
+
+// The z or p of each tile spread over its pixels, layers R, G, B.
+Image tile_map(const stats::TileTest &test, const std::vector<double> &values, int width, int height);
+
+// Writes into `folder`, made where it is missing: image, reference, difference, z and p as .exr and .png. The PNGs of
+// both images share one exposure (99 % of the reference's values lie below white); difference.png is the sum over R, G,
+// B, white to colour at the 99th percentile of its size; z.png shows the worst channel, full colour at |z| = 5; p.png
+// -log10 p, black at 6.
+void write_evidence(const std::filesystem::path &folder, const Image &image, const Image &reference,
+                    const stats::TileTest &test);
+
+// One sentence: the p-value, the worst tile, the largest region. Channels by name.
+std::string describe(const stats::TileTest &test);
+
+} // namespace opal
