@@ -9,9 +9,9 @@ namespace opal {
 namespace {
 
 constexpr int BINS = 32;
-constexpr std::size_t SWEEP_SIZE = 64;      // up to here every split is tried
-constexpr std::size_t THREAD_SIZE = 30000;  // from here on a part may get a thread of its own
-constexpr int DEEPEST_SAH = 90;             // from this depth on splits halve the set, so that depth stays bounded
+constexpr std::size_t SWEEP_SIZE = 64;     // up to here every split is tried
+constexpr std::size_t THREAD_SIZE = 30000; // from here on a part may get a thread of its own
+constexpr int DEEPEST_SAH = 90;            // from this depth on splits halve the set, so that depth stays bounded
 
 using References = std::span<Reference>;
 
@@ -31,7 +31,8 @@ struct Binning {
         for (int axis = 0; axis < 3; axis++) {
             origin[axis] = middles.lo[axis];
             factor[axis] = float(BINS) / (middles.hi[axis] - middles.lo[axis]);
-            if (!std::isfinite(factor[axis])) factor[axis] = 0;
+            if (!std::isfinite(factor[axis]))
+                factor[axis] = 0;
         }
     }
     int bin(const Reference &reference, int axis) const {
@@ -59,15 +60,18 @@ void best_of_bins(const std::array<Bin, BINS> &bins, int axis, Split &best) {
     }
     for (int i = 1; i < BINS; i++) {
         left.add(bins[i - 1]);
-        if (left.count == 0) continue;
+        if (left.count == 0)
+            continue;
         const float cost = left.cost() + right_cost[i];
-        if (cost < best.cost) best = {cost, axis, left.count, i};
+        if (cost < best.cost)
+            best = {cost, axis, left.count, i};
     }
 }
 
 Box middles_of(References set) {
     Box middles = Box::empty();
-    for (const Reference &r : set) middles.add(r.box.middle2());
+    for (const Reference &r : set)
+        middles.add(r.box.middle2());
     return middles;
 }
 
@@ -82,9 +86,11 @@ Split split_binned(References set) {
         }
     Split best;
     for (int axis = 0; axis < 3; axis++)
-        if (binning.factor[axis] > 0) best_of_bins(bins[axis], axis, best);
+        if (binning.factor[axis] > 0)
+            best_of_bins(bins[axis], axis, best);
     if (best.axis >= 0)
-        std::partition(set.begin(), set.end(), [&](const Reference &r) { return binning.bin(r, best.axis) < best.bin; });
+        std::partition(set.begin(), set.end(),
+                       [&](const Reference &r) { return binning.bin(r, best.axis) < best.bin; });
     return best;
 }
 
@@ -103,7 +109,8 @@ Split split_swept(References set) {
     Split best;
     for (int axis = 0; axis < 3; axis++) {
         const auto keys = std::span(order[axis]).first(count);
-        for (uint i = 0; i < count; i++) keys[i] = {set[i].box.middle2(axis), i};
+        for (uint i = 0; i < count; i++)
+            keys[i] = {set[i].box.middle2(axis), i};
         std::sort(keys.begin(), keys.end());
         Box right = Box::empty(), left = Box::empty();
         for (std::size_t i = count - 1; i > 0; i--) {
@@ -113,12 +120,14 @@ Split split_swept(References set) {
         for (std::size_t i = 1; i < count; i++) {
             left.add(set[keys[i - 1].index].box);
             const float cost = left.half_area() * blocks(i) + right_cost[i];
-            if (cost < best.cost) best = {cost, axis, i, 0};
+            if (cost < best.cost)
+                best = {cost, axis, i, 0};
         }
     }
     std::array<Reference, SWEEP_SIZE> copy;
     std::copy(set.begin(), set.end(), copy.begin());
-    for (std::size_t i = 0; i < count; i++) set[i] = copy[order[best.axis][i].index];
+    for (std::size_t i = 0; i < count; i++)
+        set[i] = copy[order[best.axis][i].index];
     return best;
 }
 
@@ -130,9 +139,11 @@ public:
     void build(uint index, int depth) {
         BinaryNode &node = tree.nodes[index];
         const References set = std::span(tree.references).subspan(node.first, node.count);
-        for (const Reference &reference : set) node.box.add(reference.box);
+        for (const Reference &reference : set)
+            node.box.add(reference.box);
         const std::size_t left_count = split(set, node.box, depth);
-        if (left_count == 0) return;
+        if (left_count == 0)
+            return;
         node.left = node_count.fetch_add(2);
         start(node.left, node.first, uint(left_count));
         start(node.left + 1, node.first + uint(left_count), node.count - uint(left_count));
@@ -158,16 +169,20 @@ private:
     bool take_thread() {
         int idle = idle_threads;
         while (idle > 0)
-            if (idle_threads.compare_exchange_weak(idle, idle - 1)) return true;
+            if (idle_threads.compare_exchange_weak(idle, idle - 1))
+                return true;
         return false;
     }
 
     // Orders the set and returns how many of it go to the left; 0: it stays together.
     static std::size_t split(References set, const Box &box, int depth) {
-        if (set.size() == 1) return 0;
+        if (set.size() == 1)
+            return 0;
         Split found;
-        if (depth < DEEPEST_SAH) found = set.size() <= SWEEP_SIZE ? split_swept(set) : split_binned(set);
-        if (set.size() <= BLOCK_SIZE) return found.cost < box.half_area() ? found.left : 0;
+        if (depth < DEEPEST_SAH)
+            found = set.size() <= SWEEP_SIZE ? split_swept(set) : split_binned(set);
+        if (set.size() <= BLOCK_SIZE)
+            return found.cost < box.half_area() ? found.left : 0;
         return found.axis < 0 ? halve(set) : found.left; // too deep, or all middles are one
     }
 };
@@ -178,10 +193,12 @@ std::size_t halve(References set) {
     const Box middles = middles_of(set);
     int axis = 0;
     for (int other = 1; other < 3; other++)
-        if (middles.hi[other] - middles.lo[other] > middles.hi[axis] - middles.lo[axis]) axis = other;
+        if (middles.hi[other] - middles.lo[other] > middles.hi[axis] - middles.lo[axis])
+            axis = other;
     const std::size_t half = (set.size() + 1) / 2;
-    std::nth_element(set.begin(), set.begin() + std::ptrdiff_t(half), set.end(),
-                     [axis](const Reference &a, const Reference &b) { return a.box.middle2(axis) < b.box.middle2(axis); });
+    std::nth_element(
+        set.begin(), set.begin() + std::ptrdiff_t(half), set.end(),
+        [axis](const Reference &a, const Reference &b) { return a.box.middle2(axis) < b.box.middle2(axis); });
     return half;
 }
 
@@ -191,7 +208,8 @@ BinaryTree build_binary_tree(const TriangleSoup &soup) {
     tree.references.resize(soup.corners.size());
     for (uint id = 0; id < soup.corners.size(); id++) {
         tree.references[id] = {Box::empty(), id};
-        for (uint vertex : soup.corners[id]) tree.references[id].box.add(soup.vertices[vertex]);
+        for (uint vertex : soup.corners[id])
+            tree.references[id].box.add(soup.vertices[vertex]);
     }
     // Room for the worst case; pages that are never written cost nothing.
     tree.nodes = std::make_unique_for_overwrite<BinaryNode[]>(2 * soup.corners.size());

@@ -28,11 +28,12 @@ struct BinaryTree {
     std::vector<Reference> references;
 };
 
-// Costs are counted in blocks: ceil(n / BLOCK_SIZE) times the area. Leaves hold 1 to BLOCK_SIZE triangles; smaller sets are
-// split where that makes the areas of both parts together smaller. There is at least one triangle.
+// Costs are counted in blocks: ceil(n / BLOCK_SIZE) times the area. Leaves hold 1 to BLOCK_SIZE triangles; smaller sets
+// are split where that makes the areas of both parts together smaller. There is at least one triangle.
 BinaryTree build_binary_tree(const TriangleSoup &soup);
 
-// Orders the set into halves along the longest axis of its middles; returns the size of the first one, the larger by one.
+// Orders the set into halves along the longest axis of its middles; returns the size of the first one, the larger by
+// one.
 std::size_t halve(std::span<Reference> set);
 
 } // namespace opal

@@ -13,14 +13,16 @@ Box child_box(const BvhNode &node, int child) {
 }
 
 double half_area(const Box &box) {
-    const double x = double(box.hi[0]) - box.lo[0], y = double(box.hi[1]) - box.lo[1], z = double(box.hi[2]) - box.lo[2];
+    const double x = double(box.hi[0]) - box.lo[0], y = double(box.hi[1]) - box.lo[1],
+                 z = double(box.hi[2]) - box.lo[2];
     return x * y + y * z + z * x;
 }
 
 } // namespace
 
 Bvh build_bvh(const TriangleSoup &soup) {
-    if (soup.corners.empty()) return {{}, pack_blocks(soup), OPAL_LEAF};
+    if (soup.corners.empty())
+        return {{}, pack_blocks(soup), OPAL_LEAF};
     BinaryTree tree = build_binary_tree(soup);
     return collapse(tree, soup);
 }
@@ -32,7 +34,8 @@ TriangleBlock pack_block(const TriangleSoup &soup, const uint *ids, uint count) 
         for (int corner = 0; corner < 3 && count > 0; corner++) {
             // An unused place is the first corner thrice.
             const uint vertex = place < count ? soup.corners[ids[place]][corner] : soup.corners[ids[0]][0];
-            for (int axis = 0; axis < 3; axis++) block.vertex[corner][axis][place] = soup.vertices[vertex][axis];
+            for (int axis = 0; axis < 3; axis++)
+                block.vertex[corner][axis][place] = soup.vertices[vertex][axis];
         }
     }
     return block;
@@ -44,17 +47,21 @@ std::vector<TriangleBlock> pack_blocks(const TriangleSoup &soup) {
     uint count = 0;
     for (uint id = 0; id < soup.corners.size(); id++) {
         ids[count++] = id;
-        if (count == BLOCK_SIZE) packed.push_back(pack_block(soup, ids.data(), std::exchange(count, 0)));
+        if (count == BLOCK_SIZE)
+            packed.push_back(pack_block(soup, ids.data(), std::exchange(count, 0)));
     }
-    if (count > 0 || packed.empty()) packed.push_back(pack_block(soup, ids.data(), count));
+    if (count > 0 || packed.empty())
+        packed.push_back(pack_block(soup, ids.data(), count));
     return packed;
 }
 
 double sah_cost(const Bvh &bvh) {
-    if (bvh.root & OPAL_LEAF) return BLOCK_COST;
+    if (bvh.root & OPAL_LEAF)
+        return BLOCK_COST;
     Box root = Box::empty();
     for (int child = 0; child < WIDTH; child++)
-        if (bvh.nodes[bvh.root].child[child] != OPAL_NONE) root.add(child_box(bvh.nodes[bvh.root], child));
+        if (bvh.nodes[bvh.root].child[child] != OPAL_NONE)
+            root.add(child_box(bvh.nodes[bvh.root], child));
     double sum = NODE_COST * half_area(root);
     for (const BvhNode &node : bvh.nodes)
         for (int child = 0; child < WIDTH; child++)
@@ -68,9 +75,11 @@ int stack_need(const Bvh &bvh) {
     for (std::size_t i = bvh.nodes.size(); i-- > 0;) { // children come after their parents
         int children = 0;
         for (int child = 0; child < WIDTH; child++) {
-            if (bvh.nodes[i].child[child] == OPAL_NONE) continue;
+            if (bvh.nodes[i].child[child] == OPAL_NONE)
+                continue;
             children++;
-            if (!(bvh.nodes[i].child[child] & OPAL_LEAF)) need[i] = std::max(need[i], need[bvh.nodes[i].child[child]]);
+            if (!(bvh.nodes[i].child[child] & OPAL_LEAF))
+                need[i] = std::max(need[i], need[bvh.nodes[i].child[child]]);
         }
         need[i] += children - 1;
     }

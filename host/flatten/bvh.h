@@ -15,27 +15,28 @@ struct TriangleSoup {
 };
 
 struct Bvh {
-    std::vector<BvhNode> nodes;         // parents before their children
-    std::vector<TriangleBlock> blocks;  // never empty
-    uint root = OPAL_LEAF;              // as BvhNode::child
+    std::vector<BvhNode> nodes;        // parents before their children
+    std::vector<TriangleBlock> blocks; // never empty
+    uint root = OPAL_LEAF;             // as BvhNode::child
 };
 
 // Cost of visiting a node and of testing a block, in the units of sah_cost.
 constexpr double NODE_COST = 1, BLOCK_COST = 1;
 
-// Binary tree by the surface area heuristic, collapsed to 8 children by dynamic programming (Ylitie, Karras, Laine 2017,
-// "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", section 3.2). Every triangle is in one place of
-// one block; stack_need(bvh) < OPAL_STACK. Without triangles: one block of none.
+// Binary tree by the surface area heuristic, collapsed to 8 children by dynamic programming (Ylitie, Karras, Laine
+// 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", section 3.2). Every triangle is in
+// one place of one block; stack_need(bvh) < OPAL_STACK. Without triangles: one block of none.
 Bvh build_bvh(const TriangleSoup &soup);
 
 // Blocks in the order of the triangles, for scenes that need no tree; one empty block at least.
 std::vector<TriangleBlock> pack_blocks(const TriangleSoup &soup);
 
-// What a ray that meets the root's box is expected to cost (MacDonald and Booth 1990): the areas of the nodes and of the
-// leaves over the root's area, times NODE_COST and BLOCK_COST.
+// What a ray that meets the root's box is expected to cost (MacDonald and Booth 1990): the areas of the nodes and of
+// the leaves over the root's area, times NODE_COST and BLOCK_COST.
 double sah_cost(const Bvh &bvh);
 
-// Entries of the stack that a walk may need that pushes all children it enters but one: over the path where they are most.
+// Entries of the stack that a walk may need that pushes all children it enters but one: over the path where they are
+// most.
 int stack_need(const Bvh &bvh);
 
 } // namespace opal

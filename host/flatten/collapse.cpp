@@ -6,8 +6,8 @@ namespace opal {
 namespace {
 
 // For a node of the binary tree and i = 1 .. 7: the least cost of covering it by at most i wide nodes or leaves.
-// choice[1]: 1 a wide node, 0 a leaf. choice[i], i = 2 .. 7: how many of the i go to its left child; 0: i - 1 are as good.
-// choice[8]: how many of the eight children of its own wide node go to the left.
+// choice[1]: 1 a wide node, 0 a leaf. choice[i], i = 2 .. 7: how many of the i go to its left child; 0: i - 1 are as
+// good. choice[8]: how many of the eight children of its own wide node go to the left.
 struct Cover {
     float cost[WIDTH];
     unsigned char choice[WIDTH + 1];
@@ -22,14 +22,16 @@ struct Roots {
 // Entries that a tree of halves needs: 7 for each level.
 int balanced_stack(uint count) {
     int levels = 0;
-    for (std::uint64_t room = BLOCK_SIZE; room < count; room *= WIDTH) levels++;
+    for (std::uint64_t room = BLOCK_SIZE; room < count; room *= WIDTH)
+        levels++;
     return (WIDTH - 1) * levels;
 }
 
 class Collapse {
 public:
     Collapse(BinaryTree &from, const TriangleSoup &triangles) : tree(from), soup(triangles), covers(from.node_count) {
-        for (uint i = tree.node_count; i-- > 0;) find_cover(i); // children come after their parents
+        for (uint i = tree.node_count; i-- > 0;)
+            find_cover(i); // children come after their parents
     }
 
     Bvh emit() {
@@ -59,13 +61,16 @@ private:
         cover.cost[1] = std::min(inner, leaf);
         for (int i = 2; i < WIDTH; i++) {
             cover.cost[i] = distribute(node, i, cover.choice[i]);
-            if (cover.cost[i] < cover.cost[i - 1]) continue;
+            if (cover.cost[i] < cover.cost[i - 1])
+                continue;
             cover.cost[i] = cover.cost[i - 1];
             cover.choice[i] = 0;
         }
-        if (cover.choice[1] == 0) return;
+        if (cover.choice[1] == 0)
+            return;
         const Roots roots = children_of(index);
-        for (int i = 0; i < roots.count; i++) cover.stack = std::max(cover.stack, covers[roots.index[i]].stack);
+        for (int i = 0; i < roots.count; i++)
+            cover.stack = std::max(cover.stack, covers[roots.index[i]].stack);
         cover.stack = static_cast<unsigned short>(cover.stack + roots.count - 1);
     }
 
@@ -85,7 +90,8 @@ private:
     // Appends the roots that cover `index` by at most `count`.
     void gather(uint index, int count, Roots &roots) const {
         const Cover &cover = covers[index];
-        while (count > 1 && cover.choice[count] == 0) count--;
+        while (count > 1 && cover.choice[count] == 0)
+            count--;
         if (count == 1) {
             roots.index[roots.count++] = index;
             return;
@@ -105,7 +111,8 @@ private:
     // `budget`: entries left of the stack. Either the cover fits it or halves do.
     uint emit(uint index, int budget) {
         const BinaryNode &node = tree.nodes[index];
-        if (covers[index].choice[1] == 0) return emit_leaf(node.first, node.count);
+        if (covers[index].choice[1] == 0)
+            return emit_leaf(node.first, node.count);
         const Roots roots = children_of(index);
         budget -= roots.count - 1;
         for (int i = 0; i < roots.count; i++) {
@@ -121,14 +128,16 @@ private:
 
     uint emit_leaf(uint first, uint count) {
         std::array<uint, BLOCK_SIZE> ids;
-        for (uint i = 0; i < count; i++) ids[i] = tree.references[first + i].triangle;
+        for (uint i = 0; i < count; i++)
+            ids[i] = tree.references[first + i].triangle;
         bvh.blocks.push_back(pack_block(soup, ids.data(), count));
         return OPAL_LEAF | uint(bvh.blocks.size() - 1);
     }
 
     // The tree of least depth: eight parts of the same number of triangles, and so on.
     uint emit_halves(uint first, uint count) {
-        if (count <= BLOCK_SIZE) return emit_leaf(first, count);
+        if (count <= BLOCK_SIZE)
+            return emit_leaf(first, count);
         const uint place = add_node();
         std::array<uint, WIDTH + 1> ends{first, first + count};
         for (int parts = 1; parts < WIDTH; parts *= 2) // each part becomes two
@@ -138,13 +147,16 @@ private:
             }
         for (int i = 0; i < WIDTH; i++) {
             Box box = Box::empty();
-            for (const Reference &reference : references(ends[i], ends[i + 1])) box.add(reference.box);
+            for (const Reference &reference : references(ends[i], ends[i + 1]))
+                box.add(reference.box);
             set_child(place, i, box, emit_halves(ends[i], ends[i + 1] - ends[i]));
         }
         return place;
     }
 
-    std::span<Reference> references(uint begin, uint end) { return std::span(tree.references).subspan(begin, end - begin); }
+    std::span<Reference> references(uint begin, uint end) {
+        return std::span(tree.references).subspan(begin, end - begin);
+    }
 
     // A node without children.
     uint add_node() {

@@ -7,12 +7,13 @@ namespace opal {
 
 constexpr int WIDTH = 8; // children of a node
 
-// The 8-wide tree of least sah_cost that keeps the binary tree's cuts (Ylitie, Karras, Laine 2017, section 3.2). Where its
-// path would need OPAL_STACK entries, what lies below is cut in halves instead, which takes 7 entries for each factor of 8.
-// May reorder tree.references.
+// The 8-wide tree of least sah_cost that keeps the binary tree's cuts (Ylitie, Karras, Laine 2017, section 3.2). Where
+// its path would need OPAL_STACK entries, what lies below is cut in halves instead, which takes 7 entries for each
+// factor of 8. May reorder tree.references.
 Bvh collapse(BinaryTree &tree, const TriangleSoup &soup);
 
-// The block of triangles ids[0 .. count-1], count <= BLOCK_SIZE. Unused places are the first triangle's first corner thrice.
+// The block of triangles ids[0 .. count-1], count <= BLOCK_SIZE. Unused places are the first triangle's first corner
+// thrice.
 TriangleBlock pack_block(const TriangleSoup &soup, const uint *ids, uint count);
 
 } // namespace opal

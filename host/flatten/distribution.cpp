@@ -11,7 +11,8 @@ AliasTable build_alias_table(std::span<const double> weights) {
     AliasTable table{std::vector<double>(count), std::vector<double>(count, 1.0), std::vector<uint>(count)};
     // Weights over many decades: divided by the largest they cannot overflow, and the sum's error stays relative.
     double largest = 0, sum = 0, lost = 0;
-    for (double weight : weights) largest = std::max(largest, weight);
+    for (double weight : weights)
+        largest = std::max(largest, weight);
     for (double weight : weights) { // Kahan
         const double term = weight / largest - lost, next = sum + term;
         lost = (next - sum) - term;

@@ -12,10 +12,12 @@ constexpr double pi = std::numbers::pi;
 double luminance(const Color &c) { return 0.212671 * c[0] + 0.715160 * c[1] + 0.072169 * c[2]; }
 bool is_black(const Color &c) { return c[0] == 0 && c[1] == 0 && c[2] == 0; }
 void store(const Color &from, double factor, float (&to)[3]) {
-    for (int i = 0; i < 3; i++) to[i] = float(from[i] * factor);
+    for (int i = 0; i < 3; i++)
+        to[i] = float(from[i] * factor);
 }
 void store(Vec3 from, float (&to)[3]) {
-    for (int i = 0; i < 3; i++) to[i] = float(from[i]);
+    for (int i = 0; i < 3; i++)
+        to[i] = float(from[i]);
 }
 
 // Where each triangle's vertices are, as TinyTriangle::slot.
@@ -23,7 +25,8 @@ std::vector<uint> slots_of(const FlatScene &scene) {
     std::vector<uint> slots(scene.triangles.size());
     for (uint slot = 0; slot < scene.blocks.size() * 8; slot++) {
         const uint id = scene.blocks[slot / 8].id[slot % 8];
-        if (id != OPAL_NONE) slots[id] = slot;
+        if (id != OPAL_NONE)
+            slots[id] = slot;
     }
     return slots;
 }
@@ -37,9 +40,11 @@ public:
         uint end = 0; // triangles lie mesh by mesh
         for (uint mesh = 0; mesh < description.meshes.size(); mesh++) {
             const uint begin = end;
-            while (end < scene.triangles.size() && scene.triangles[end].mesh == mesh) end++;
+            while (end < scene.triangles.size() && scene.triangles[end].mesh == mesh)
+                end++;
             const auto &radiance = description.meshes[mesh].radiance;
-            if (!radiance || is_black(*radiance) || begin == end) continue;
+            if (!radiance || is_black(*radiance) || begin == end)
+                continue;
             EmitterRecord record{};
             store(*radiance, 1, record.radiance);
             const double area = std::holds_alternative<Parallelogram>(description.meshes[mesh].shape)
@@ -48,7 +53,8 @@ public:
             scene.meshes[mesh].emitter = add(record, pi * luminance(*radiance) * area);
         }
         for (const PointLight &light : description.point_lights)
-            if (!is_black(light.power)) add_point(light);
+            if (!is_black(light.power))
+                add_point(light);
         fill_choice();
     }
 
@@ -81,7 +87,8 @@ private:
     }
 
     double add_mesh(uint begin, uint end, EmitterRecord &record) {
-        if (slots.empty()) slots = slots_of(scene);
+        if (slots.empty())
+            slots = slots_of(scene);
         std::vector<double> areas;
         double area = 0;
         for (uint id = begin; id < end; id++) {
@@ -93,10 +100,12 @@ private:
         record.area = float(area);
         record.first = uint(scene.light_triangles.size());
         record.count = end - begin;
-        if (description.strategy[AXIS_triangle_choice] == CHOICE_triangle_choice_uniform) areas.assign(areas.size(), 1);
+        if (description.strategy[AXIS_triangle_choice] == CHOICE_triangle_choice_uniform)
+            areas.assign(areas.size(), 1);
         const AliasTable table = build_alias_table(areas);
         for (uint i = 0; i < record.count; i++)
-            scene.light_triangles.push_back({slots[begin + i], float(table.accept[i]), table.other[i], float(table.probability[i])});
+            scene.light_triangles.push_back(
+                {slots[begin + i], float(table.accept[i]), table.other[i], float(table.probability[i])});
         return area;
     }
 
@@ -110,7 +119,8 @@ private:
     }
 
     void fill_choice() {
-        if (description.strategy[AXIS_emitter_choice] == CHOICE_emitter_choice_uniform) powers.assign(powers.size(), 1);
+        if (description.strategy[AXIS_emitter_choice] == CHOICE_emitter_choice_uniform)
+            powers.assign(powers.size(), 1);
         const AliasTable table = build_alias_table(powers);
         for (std::size_t i = 0; i < scene.emitters.size(); i++) {
             scene.emitters[i].probability = float(table.probability[i]);
@@ -122,7 +132,8 @@ private:
 
 } // namespace
 
-void gather_emitters(const SceneDescription &description, const Frame &frame, const TriangleSoup &soup, FlatScene &scene) {
+void gather_emitters(const SceneDescription &description, const Frame &frame, const TriangleSoup &soup,
+                     FlatScene &scene) {
     EmitterGatherer(description, frame, soup, scene).gather();
 }
 

@@ -13,58 +13,68 @@ struct Decision {
     std::string reason;
 };
 
-std::string plural(std::size_t count, const char *one, const char *many) { return fmt::format("{} {}", count, count == 1 ? one : many); }
+std::string plural(std::size_t count, const char *one, const char *many) {
+    return fmt::format("{} {}", count, count == 1 ? one : many);
+}
 
 class Decider {
 public:
-    Decider(const SceneDescription &from, const FlatScene &flat, int width) : description(from), scene(flat), lanes(width) {
+    Decider(const SceneDescription &from, const FlatScene &flat, int width)
+        : description(from), scene(flat), lanes(width) {
         const int integrator = description.strategy[AXIS_integrator];
-        unlit = integrator == CHOICE_integrator_normals || integrator == CHOICE_integrator_ao || integrator == CHOICE_integrator_simple;
+        unlit = integrator == CHOICE_integrator_normals || integrator == CHOICE_integrator_ao ||
+                integrator == CHOICE_integrator_simple;
         follows_only = (integrator == CHOICE_integrator_direct_lighting || integrator == CHOICE_integrator_path) &&
                        description.strategy[AXIS_lighting] == CHOICE_lighting_bsdf;
     }
 
-#define OPAL_DECIDE_BSDF(name) \
+#define OPAL_DECIDE_BSDF(name)                                                                                         \
     Decision bsdf_##name() const { return bsdf(BSDF_##name); }
     OPAL_BSDFS(OPAL_DECIDE_BSDF)
 #undef OPAL_DECIDE_BSDF
 
-#define OPAL_DECIDE_EMITTER(name) \
+#define OPAL_DECIDE_EMITTER(name)                                                                                      \
     Decision emitter_##name() const { return emitter(EMITTER_##name); }
     OPAL_EMITTERS(OPAL_DECIDE_EMITTER)
 #undef OPAL_DECIDE_EMITTER
 
     Decision bsdf(uint kind) const {
-        if (unlit) return {false, "this integrator asks no BSDF"};
+        if (unlit)
+            return {false, "this integrator asks no BSDF"};
         const auto has = [&](const MeshRecord &mesh) { return scene.bsdfs[mesh.bsdf].kind == kind; };
-        return counted(std::size_t(std::count_if(scene.meshes.begin(), scene.meshes.end(), has)), scene.meshes.size(), "mesh", "meshes");
+        return counted(std::size_t(std::count_if(scene.meshes.begin(), scene.meshes.end(), has)), scene.meshes.size(),
+                       "mesh", "meshes");
     }
 
     Decision emitter(uint kind) const {
-        if (unlit) return {false, "this integrator asks no emitter"};
-        if (kind == EMITTER_point && follows_only) return {false, "a BSDF sample never hits a point"};
+        if (unlit)
+            return {false, "this integrator asks no emitter"};
+        if (kind == EMITTER_point && follows_only)
+            return {false, "a BSDF sample never hits a point"};
         const auto has = [&](const EmitterRecord &emitter) { return emitter.kind == kind; };
-        return counted(std::size_t(std::count_if(scene.emitters.begin(), scene.emitters.end(), has)), scene.emitters.size(), "emitter",
-                       "emitters");
+        return counted(std::size_t(std::count_if(scene.emitters.begin(), scene.emitters.end(), has)),
+                       scene.emitters.size(), "emitter", "emitters");
     }
 
     Decision many_emitters() const {
-        if (unlit) return {false, "this integrator asks no emitter"};
+        if (unlit)
+            return {false, "this integrator asks no emitter"};
         return {scene.emitters.size() > 1, plural(scene.emitters.size(), "emitter", "emitters")};
     }
 
     Decision shading_normals() const {
         const auto smooth = [](const Triangle &triangle) { return triangle.normal[0] != OPAL_NONE; };
-        return counted(std::size_t(std::count_if(scene.triangles.begin(), scene.triangles.end(), smooth)), scene.triangles.size(),
-                       "triangle", "triangles");
+        return counted(std::size_t(std::count_if(scene.triangles.begin(), scene.triangles.end(), smooth)),
+                       scene.triangles.size(), "triangle", "triangles");
     }
 
     Decision tree() const {
         const std::string count = plural(scene.triangles.size(), "triangle", "triangles");
-        if (lanes < TINY_LANES) return {true, fmt::format("{} at {}", count, plural(std::size_t(lanes), "lane", "lanes"))};
+        if (lanes < TINY_LANES)
+            return {true, fmt::format("{} at {}", count, plural(std::size_t(lanes), "lane", "lanes"))};
         if (scene.tiny_triangles.size() < scene.triangles.size())
-            return {true, fmt::format("{}, and a tree pays from {} triangles or {} distinct vertices on", count, OPAL_TINY_TRIANGLES + 1,
-                                      OPAL_TINY_VERTICES + 1)};
+            return {true, fmt::format("{}, and a tree pays from {} triangles or {} distinct vertices on", count,
+                                      OPAL_TINY_TRIANGLES + 1, OPAL_TINY_VERTICES + 1)};
         return {false, fmt::format("{}: testing each against all lanes is faster", count)};
     }
 
@@ -87,8 +97,10 @@ private:
     bool follows_only; // light is found by BSDF samples alone
 
     static Decision counted(std::size_t count, std::size_t all, const char *one, const char *many) {
-        if (count == 0) return {false, fmt::format("no {} has it", one)};
-        if (all == 1) return {true, fmt::format("the only {} has it", one)};
+        if (count == 0)
+            return {false, fmt::format("no {} has it", one)};
+        if (all == 1)
+            return {true, fmt::format("the only {} has it", one)};
         return {true, fmt::format("{} of {}", count, plural(all, one, many))};
     }
 };
@@ -96,14 +108,16 @@ private:
 // The axis `hemisphere`: where the materials agree, the kernel holds one way only.
 int find_hemisphere(const SceneDescription &description, const FlatScene &scene, std::string &reason) {
     const int chosen = description.strategy[AXIS_hemisphere];
-    if (chosen != CHOICE_hemisphere_material) return chosen;
+    if (chosen != CHOICE_hemisphere_material)
+        return chosen;
     std::size_t cosine = 0, all = 0;
     for (const BsdfRecord &record : scene.bsdfs)
         if (record.kind == BSDF_diffuse) {
             all++;
             cosine += record.u.diffuse.use_cosine != 0;
         }
-    if (all == 0 || (cosine > 0 && cosine < all)) return chosen;
+    if (all == 0 || (cosine > 0 && cosine < all))
+        return chosen;
     reason = cosine ? "all diffuse materials use_cosine" : "no diffuse material has use_cosine";
     return cosine ? CHOICE_hemisphere_cosine : CHOICE_hemisphere_uniform;
 }
@@ -121,18 +135,21 @@ Features find_features(const SceneDescription &description, const FlatScene &sce
     Features features;
     const bool specialise = description.strategy.specialise;
     for (const auto &[name, decision] : decisions)
-        features.list.push_back(specialise ? Feature{name, decision.on, decision.reason} : Feature{name, true, "--specialise off"});
+        features.list.push_back(specialise ? Feature{name, decision.on, decision.reason}
+                                           : Feature{name, true, "--specialise off"});
     for (int axis = 0; axis < AXIS_COUNT; axis++) {
         features.axes[axis] = specialise ? description.strategy[axis] : -1;
         features.axis_reasons[axis] = specialise ? "chosen" : "--specialise off: decided at run time";
     }
-    if (specialise) features.axes[AXIS_hemisphere] = find_hemisphere(description, scene, features.axis_reasons[AXIS_hemisphere]);
+    if (specialise)
+        features.axes[AXIS_hemisphere] = find_hemisphere(description, scene, features.axis_reasons[AXIS_hemisphere]);
     return features;
 }
 
 bool Features::operator[](std::string_view name) const {
     for (const Feature &feature : list)
-        if (feature.name == name) return feature.on;
+        if (feature.name == name)
+            return feature.on;
     throw std::logic_error("no feature is named " + std::string(name));
 }
 

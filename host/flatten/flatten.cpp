@@ -12,14 +12,16 @@ namespace opal {
 namespace {
 
 void store(Vec3 from, float (&to)[3]) {
-    for (int i = 0; i < 3; i++) to[i] = float(from[i]);
+    for (int i = 0; i < 3; i++)
+        to[i] = float(from[i]);
 }
 
 // Distances may go beyond float; the largest one is as far.
 float to_distance(double d) { return float(std::min(d, double(std::numeric_limits<float>::max()))); }
 
-// SCENE_FORMAT 3: direction = left (1 - 2 sx) tan_half_x + up (1 - 2 sy) tan_half_y + forward. The columns are those of toWorld
-// divided by the length of the third, so that a point at camera depth z lies z |column 2| times that vector away.
+// SCENE_FORMAT 3: direction = left (1 - 2 sx) tan_half_x + up (1 - 2 sy) tan_half_y + forward. The columns are those of
+// toWorld divided by the length of the third, so that a point at camera depth z lies z |column 2| times that vector
+// away.
 void fill_camera(const Camera &camera, const Frame &frame, Settings &settings) {
     const auto &rows = camera.to_world.rows;
     const auto column = [&rows](int i) { return Vec3{rows[0][i], rows[1][i], rows[2][i]}; };
@@ -67,25 +69,30 @@ void gather_bsdfs(const SceneDescription &description, FlatScene &scene) {
         const BsdfRecord record = with_hemisphere(mesh.bsdf.record, description.strategy[AXIS_hemisphere]);
         const std::string bytes(reinterpret_cast<const char *>(&record), sizeof record);
         const auto [found, is_new] = known.try_emplace(bytes, uint(scene.bsdfs.size()));
-        if (is_new) scene.bsdfs.push_back(record);
+        if (is_new)
+            scene.bsdfs.push_back(record);
         scene.meshes.push_back({found->second, OPAL_NONE});
     }
 }
 
 // Fills the tables of distinct vertices, if there are few enough.
 bool gather_tiny(const TriangleSoup &soup, FlatScene &scene) {
-    if (soup.corners.size() > OPAL_TINY_TRIANGLES) return false;
+    if (soup.corners.size() > OPAL_TINY_TRIANGLES)
+        return false;
     std::map<std::array<float, 3>, uint> known;
     std::vector<uint> numbers; // of each corner's vertex
     for (const auto &corners : soup.corners)
         for (uint vertex : corners) {
             numbers.push_back(known.try_emplace(soup.vertices[vertex], uint(known.size())).first->second);
-            if (known.size() > OPAL_TINY_VERTICES) return false;
+            if (known.size() > OPAL_TINY_VERTICES)
+                return false;
         }
     scene.tiny_vertices.resize(3 * known.size());
-    for (const auto &[position, number] : known) std::copy(position.begin(), position.end(), &scene.tiny_vertices[3 * number]);
+    for (const auto &[position, number] : known)
+        std::copy(position.begin(), position.end(), &scene.tiny_vertices[3 * number]);
     for (uint id = 0; id < soup.corners.size(); id++)
-        scene.tiny_triangles.push_back({{numbers[3 * id], numbers[3 * id + 1], numbers[3 * id + 2]}, id}); // as pack_blocks has them
+        scene.tiny_triangles.push_back(
+            {{numbers[3 * id], numbers[3 * id + 1], numbers[3 * id + 2]}, id}); // as pack_blocks has them
     scene.settings.tiny_triangle_count = uint(scene.tiny_triangles.size());
     scene.settings.tiny_vertex_count = uint(known.size());
     return true;

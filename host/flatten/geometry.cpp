@@ -18,17 +18,22 @@ struct Extent {
     }
 };
 
-std::array<Vec3, 4> corners_of(const Parallelogram &p) { return {p.origin, p.origin + p.u, p.origin + p.v, p.origin + p.u + p.v}; }
+std::array<Vec3, 4> corners_of(const Parallelogram &p) {
+    return {p.origin, p.origin + p.u, p.origin + p.v, p.origin + p.u + p.v};
+}
 
 void add_extent(const Parallelogram &shape, Extent &extent) {
-    for (Vec3 corner : corners_of(shape)) extent.add(corner);
+    for (Vec3 corner : corners_of(shape))
+        extent.add(corner);
 }
 void add_extent(const TriangleMesh &shape, Extent &extent) { // a position that no triangle uses does not count
     for (const auto &triangle : shape.triangles)
-        for (const auto &corner : triangle) extent.add(shape.positions[corner.position]);
+        for (const auto &corner : triangle)
+            extent.add(shape.positions[corner.position]);
 }
 
-// Whether the device, in float, finds the direction of the normal: its squared length neither vanishes nor loses digits.
+// Whether the device, in float, finds the direction of the normal: its squared length neither vanishes nor loses
+// digits.
 bool has_normal(const std::array<float, 3> &a, const std::array<float, 3> &b, const std::array<float, 3> &c) {
     const Vec3 exact = normal_of(a, b, c);
     const float x = b[0] - a[0], y = b[1] - a[1], z = b[2] - a[2];
@@ -45,14 +50,18 @@ public:
     void add(const TriangleMesh &mesh) {
         const uint first_normal = uint(scene.normals.size() / 3);
         base = uint(soup.vertices.size());
-        for (Vec3 position : mesh.positions) soup.vertices.push_back(frame(position));
+        for (Vec3 position : mesh.positions)
+            soup.vertices.push_back(frame(position));
         for (Vec3 normal : mesh.normals)
-            for (double component : {normal.x, normal.y, normal.z}) scene.normals.push_back(float(component));
+            for (double component : {normal.x, normal.y, normal.z})
+                scene.normals.push_back(float(component));
         for (const auto &triangle : mesh.triangles) {
             // Interpolation takes three normals: a triangle that lacks one is flat.
-            const bool smooth = triangle[0].normal != OPAL_NONE && triangle[1].normal != OPAL_NONE && triangle[2].normal != OPAL_NONE;
+            const bool smooth =
+                triangle[0].normal != OPAL_NONE && triangle[1].normal != OPAL_NONE && triangle[2].normal != OPAL_NONE;
             std::array<uint, 3> normals{OPAL_NONE, OPAL_NONE, OPAL_NONE};
-            for (int i = 0; i < 3 && smooth; i++) normals[i] = first_normal + triangle[i].normal;
+            for (int i = 0; i < 3 && smooth; i++)
+                normals[i] = first_normal + triangle[i].normal;
             add_triangle({triangle[0].position, triangle[1].position, triangle[2].position}, normals);
         }
         mesh_index++;
@@ -60,7 +69,8 @@ public:
 
     void add(const Parallelogram &shape) {
         base = uint(soup.vertices.size());
-        for (Vec3 corner : corners_of(shape)) soup.vertices.push_back(frame(corner));
+        for (Vec3 corner : corners_of(shape))
+            soup.vertices.push_back(frame(corner));
         add_triangle({0, 1, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE});
         add_triangle({1, 3, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE});
         mesh_index++;
@@ -75,7 +85,8 @@ private:
     uint base = 0, mesh_index = 0;
 
     void add_triangle(std::array<uint, 3> corners, std::array<uint, 3> normals) {
-        for (uint &corner : corners) corner += base;
+        for (uint &corner : corners)
+            corner += base;
         if (!has_normal(soup.vertices[corners[0]], soup.vertices[corners[1]], soup.vertices[corners[2]])) {
             dropped++;
             return;
@@ -94,13 +105,17 @@ std::array<float, 3> Frame::operator()(Vec3 world) const {
 
 Frame find_frame(const SceneDescription &scene) {
     Extent extent;
-    for (const Mesh &mesh : scene.meshes) std::visit([&](const auto &shape) { add_extent(shape, extent); }, mesh.shape);
-    for (const PointLight &light : scene.point_lights) extent.add(light.position);
-    if (extent.lo.x > extent.hi.x) return {};
+    for (const Mesh &mesh : scene.meshes)
+        std::visit([&](const auto &shape) { add_extent(shape, extent); }, mesh.shape);
+    for (const PointLight &light : scene.point_lights)
+        extent.add(light.position);
+    if (extent.lo.x > extent.hi.x)
+        return {};
     const Vec3 center = extent.lo * 0.5 + extent.hi * 0.5, half = extent.hi * 0.5 - extent.lo * 0.5;
     int exponent; // half side = m 2^exponent, m in [0.5, 1)
     const double m = std::frexp(std::max({half.x, half.y, half.z}), &exponent);
-    if (m == 0) return {center, 1};
+    if (m == 0)
+        return {center, 1};
     return {center, std::ldexp(1.0, m == 0.5 ? 1 - exponent : -exponent)};
 }
 
@@ -115,9 +130,11 @@ TriangleSoup gather_triangles(const SceneDescription &description, const Frame &
     gatherer.soup.vertices.reserve(vertices);
     gatherer.soup.corners.reserve(triangles);
     scene.triangles.reserve(triangles);
-    for (const Mesh &mesh : description.meshes) std::visit([&](const auto &shape) { gatherer.add(shape); }, mesh.shape);
+    for (const Mesh &mesh : description.meshes)
+        std::visit([&](const auto &shape) { gatherer.add(shape); }, mesh.shape);
     if (gatherer.dropped > 0)
-        warn(fmt::format("{} of {} triangles dropped: no area is left of them in single precision", gatherer.dropped, triangles));
+        warn(fmt::format("{} of {} triangles dropped: no area is left of them in single precision", gatherer.dropped,
+                         triangles));
     return std::move(gatherer.soup);
 }
 

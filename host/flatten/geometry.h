@@ -17,8 +17,8 @@ struct Frame {
 // (0.5, 1]. A scene of nothing, or of one point, has scale 1.
 Frame find_frame(const SceneDescription &scene);
 
-// Fills scene.triangles and scene.normals, and returns the positions. Triangles that the rounding to float leaves without a
-// normal are left out, with a warning that counts them.
+// Fills scene.triangles and scene.normals, and returns the positions. Triangles that the rounding to float leaves
+// without a normal are left out, with a warning that counts them.
 TriangleSoup gather_triangles(const SceneDescription &description, const Frame &frame, FlatScene &scene);
 
 // (b - a) x (c - a), exact but for the rounding of double; its length is twice the area.

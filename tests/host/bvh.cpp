@@ -18,8 +18,8 @@ constexpr double INF = INFINITY;
 struct Random {
     std::mt19937 bits;
     explicit Random(unsigned seed) : bits(seed) {}
-    float operator()() { return float(bits() >> 8) * 0x1p-24f; }             // in [0, 1)
-    float around() { return 2 * (*this)() - 1; }                             // in [-1, 1)
+    float operator()() { return float(bits() >> 8) * 0x1p-24f; } // in [0, 1)
+    float around() { return 2 * (*this)() - 1; }                 // in [-1, 1)
     std::array<float, 3> point(float size) { return {size * around(), size * around(), size * around()}; }
 };
 
@@ -29,14 +29,17 @@ void add_triangle(TriangleSoup &soup, std::array<float, 3> a, std::array<float, 
     soup.corners.push_back({first, first + 1, first + 2});
 }
 
-std::array<float, 3> plus(std::array<float, 3> a, std::array<float, 3> b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+std::array<float, 3> plus(std::array<float, 3> a, std::array<float, 3> b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
 
 TriangleSoup random_soup(unsigned count, float size, unsigned seed) {
     Random random(seed);
     TriangleSoup soup;
     for (unsigned i = 0; i < count; i++) {
         const auto middle = random.point(1);
-        add_triangle(soup, plus(middle, random.point(size)), plus(middle, random.point(size)), plus(middle, random.point(size)));
+        add_triangle(soup, plus(middle, random.point(size)), plus(middle, random.point(size)),
+                     plus(middle, random.point(size)));
     }
     return soup;
 }
@@ -46,7 +49,8 @@ TriangleSoup grid(unsigned n, float height) {
     TriangleSoup soup;
     for (unsigned y = 0; y <= n; y++)
         for (unsigned x = 0; x <= n; x++)
-            soup.vertices.push_back({2.f * x / n - 1, 2.f * y / n - 1, height * std::sin(9.f * x / n) * std::cos(7.f * y / n)});
+            soup.vertices.push_back(
+                {2.f * x / n - 1, 2.f * y / n - 1, height * std::sin(9.f * x / n) * std::cos(7.f * y / n)});
     for (unsigned y = 0; y < n; y++)
         for (unsigned x = 0; x < n; x++) {
             const uint a = y * (n + 1) + x, b = a + 1, c = a + n + 1, d = c + 1;
@@ -62,13 +66,27 @@ TriangleSoup nasty(int which) {
     for (int i = 0; i < 100; i++) {
         const float f = float(i) / 100;
         switch (which) {
-        case 0: add_triangle(soup, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}); break;                       // all the same
-        case 1: add_triangle(soup, {-f, -f, 0}, {f, -f, 0}, {0, 2 * f + .1f, 0}); break;          // one plane
-        case 2: add_triangle(soup, {-1, f, 0}, {1, f, 0}, {1, f + 1e-6f, 1e-6f}); break;          // slivers
-        case 3: add_triangle(soup, {-1 - f, -1, -f}, {1 + f, -1, f}, {0, 2, 0}); break;           // one middle, growing
-        case 4: add_triangle(soup, {0, 0, std::ldexp(1.f, -i)}, {1, 0, std::ldexp(1.f, -i)}, {0, 1, std::ldexp(1.f, -i)}); break;
-        case 5: add_triangle(soup, random.point(1), random.point(1e-4f), random.point(1e-8f)); break;
-        default: add_triangle(soup, {f, 0, 0}, {f, 1, 0}, {f, 0, 1}); break;                      // parallel, flat boxes
+        case 0:
+            add_triangle(soup, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+            break; // all the same
+        case 1:
+            add_triangle(soup, {-f, -f, 0}, {f, -f, 0}, {0, 2 * f + .1f, 0});
+            break; // one plane
+        case 2:
+            add_triangle(soup, {-1, f, 0}, {1, f, 0}, {1, f + 1e-6f, 1e-6f});
+            break; // slivers
+        case 3:
+            add_triangle(soup, {-1 - f, -1, -f}, {1 + f, -1, f}, {0, 2, 0});
+            break; // one middle, growing
+        case 4:
+            add_triangle(soup, {0, 0, std::ldexp(1.f, -i)}, {1, 0, std::ldexp(1.f, -i)}, {0, 1, std::ldexp(1.f, -i)});
+            break;
+        case 5:
+            add_triangle(soup, random.point(1), random.point(1e-4f), random.point(1e-8f));
+            break;
+        default:
+            add_triangle(soup, {f, 0, 0}, {f, 1, 0}, {f, 0, 1});
+            break; // parallel, flat boxes
         }
     }
     return soup;
@@ -83,7 +101,8 @@ TriangleSoup nested_clusters() {
         for (int cluster = 1; cluster < 8; cluster++)
             for (int i = 0; i < 8; i++) {
                 const float size = std::ldexp(1.f, -level);
-                const std::array<float, 3> middle{cluster & 1 ? size : 0, cluster & 2 ? size : 0, cluster & 4 ? size : 0};
+                const std::array<float, 3> middle{cluster & 1 ? size : 0, cluster & 2 ? size : 0,
+                                                  cluster & 4 ? size : 0};
                 add_triangle(soup, plus(middle, random.point(size / 16)), plus(middle, random.point(size / 16)),
                              plus(middle, random.point(size / 16)));
             }
@@ -100,7 +119,8 @@ Vec3 to_vec(const std::array<float, 3> &p) { return {p[0], p[1], p[2]}; }
 double hit_triangle(const Ray &ray, Vec3 a, Vec3 b, Vec3 c) {
     const Vec3 ab = b - a, ac = c - a, p = cross(ray.direction, ac), s = ray.origin - a, q = cross(s, ab);
     const double determinant = dot(ab, p);
-    if (determinant == 0) return INF;
+    if (determinant == 0)
+        return INF;
     const double u = dot(s, p) / determinant, v = dot(ray.direction, q) / determinant, t = dot(ac, q) / determinant;
     return u >= 0 && v >= 0 && u + v <= 1 && t > 0 ? t : INF;
 }
@@ -108,16 +128,20 @@ double hit_triangle(const Ray &ray, Vec3 a, Vec3 b, Vec3 c) {
 double hit_brute_force(const Ray &ray, const TriangleSoup &soup) {
     double nearest = INF;
     for (const auto &[a, b, c] : soup.corners)
-        nearest = std::min(nearest, hit_triangle(ray, to_vec(soup.vertices[a]), to_vec(soup.vertices[b]), to_vec(soup.vertices[c])));
+        nearest = std::min(
+            nearest, hit_triangle(ray, to_vec(soup.vertices[a]), to_vec(soup.vertices[b]), to_vec(soup.vertices[c])));
     return nearest;
 }
 
 bool meets_box(const Ray &ray, const BvhNode &node, int child, double nearest) {
     double enter = 0, leave = nearest;
     for (int axis = 0; axis < 3; axis++) {
-        const double d = ray.direction[axis], o = ray.origin[axis], lo = node.lo[axis][child], hi = node.hi[axis][child];
-        if (d == 0 && (o < lo || o > hi)) return false;
-        if (d == 0) continue;
+        const double d = ray.direction[axis], o = ray.origin[axis], lo = node.lo[axis][child],
+                     hi = node.hi[axis][child];
+        if (d == 0 && (o < lo || o > hi))
+            return false;
+        if (d == 0)
+            continue;
         const double slack = 1e-12 * (std::abs(o) + 1) / std::abs(d); // rounding of this test's own hits
         enter = std::max(enter, ((d < 0 ? hi : lo) - o) / d - slack);
         leave = std::min(leave, ((d < 0 ? lo : hi) - o) / d + slack);
@@ -136,14 +160,16 @@ double hit_tree(const Ray &ray, const Bvh &bvh, int &most_entries) {
         if (at & OPAL_LEAF) {
             const TriangleBlock &block = bvh.blocks[at & ~OPAL_LEAF];
             const auto vertex = [&block](int corner, int place) {
-                return Vec3{block.vertex[corner][0][place], block.vertex[corner][1][place], block.vertex[corner][2][place]};
+                return Vec3{block.vertex[corner][0][place], block.vertex[corner][1][place],
+                            block.vertex[corner][2][place]};
             };
             for (int place = 0; place < 8; place++)
                 nearest = std::min(nearest, hit_triangle(ray, vertex(0, place), vertex(1, place), vertex(2, place)));
             continue;
         }
         for (int child = 0; child < 8; child++)
-            if (meets_box(ray, bvh.nodes[at], child, nearest)) stack.push_back(bvh.nodes[at].child[child]);
+            if (meets_box(ray, bvh.nodes[at], child, nearest))
+                stack.push_back(bvh.nodes[at].child[child]);
     }
     return nearest;
 }
@@ -158,17 +184,21 @@ void check_against_brute_force(const TriangleSoup &soup, int rays) {
         if (!soup.corners.empty() && i % 3 == 0) {
             const auto &corners = soup.corners[random.bits() % soup.corners.size()];
             const double u = random(), v = random() * (1 - u);
-            const Vec3 a = to_vec(soup.vertices[corners[0]]), b = to_vec(soup.vertices[corners[1]]), c = to_vec(soup.vertices[corners[2]]);
+            const Vec3 a = to_vec(soup.vertices[corners[0]]), b = to_vec(soup.vertices[corners[1]]),
+                       c = to_vec(soup.vertices[corners[2]]);
             ray.direction = a * (1 - u - v) + b * u + c * v - ray.origin;
         }
-        if (i % 3 == 1) ray.direction = {i % 9 == 1 ? 1. : 0., i % 9 == 4 ? -1. : 0., i % 9 == 7 ? 1. : 0.};
+        if (i % 3 == 1)
+            ray.direction = {i % 9 == 1 ? 1. : 0., i % 9 == 4 ? -1. : 0., i % 9 == 7 ? 1. : 0.};
         const double expected = hit_brute_force(ray, soup);
         const double found = hit_tree(ray, bvh, most_entries);
-        if (found != expected) FAIL("ray " << i << ": " << found << ", not " << expected);
+        if (found != expected)
+            FAIL("ray " << i << ": " << found << ", not " << expected);
         hits += expected < INF;
     }
     CHECK(most_entries <= OPAL_STACK);
-    if (!soup.corners.empty()) CHECK(hits > rays / 10);
+    if (!soup.corners.empty())
+        CHECK(hits > rays / 10);
 }
 
 // Boxes hold what is below them exactly; every node, block and triangle is reached once.
@@ -179,18 +209,22 @@ struct Structure {
     std::size_t nodes = 0, blocks = 0;
 
     Box visit(uint at) {
-        if (at & OPAL_LEAF) return visit_block(bvh.blocks.at(at & ~OPAL_LEAF));
+        if (at & OPAL_LEAF)
+            return visit_block(bvh.blocks.at(at & ~OPAL_LEAF));
         nodes++;
         Box all = Box::empty();
         const BvhNode &node = bvh.nodes.at(at);
         for (int child = 0; child < 8; child++) {
-            const Box box{{node.lo[0][child], node.lo[1][child], node.lo[2][child]}, {node.hi[0][child], node.hi[1][child], node.hi[2][child]}};
+            const Box box{{node.lo[0][child], node.lo[1][child], node.lo[2][child]},
+                          {node.hi[0][child], node.hi[1][child], node.hi[2][child]}};
             if (node.child[child] == OPAL_NONE) {
-                if (box.lo != Box::empty().lo || box.hi != Box::empty().hi) FAIL("an unused child has a box");
+                if (box.lo != Box::empty().lo || box.hi != Box::empty().hi)
+                    FAIL("an unused child has a box");
                 continue;
             }
             const Box below = visit(node.child[child]);
-            if (below.lo != box.lo || below.hi != box.hi) FAIL("box of child " << child << " of node " << at);
+            if (below.lo != box.lo || below.hi != box.hi)
+                FAIL("box of child " << child << " of node " << at);
             all.add(box);
         }
         return all;
@@ -201,15 +235,19 @@ struct Structure {
         Box box = Box::empty();
         for (int place = 0; place < 8; place++) {
             const uint id = block.id[place];
-            if (id != OPAL_NONE) triangle_seen.at(id)++;
+            if (id != OPAL_NONE)
+                triangle_seen.at(id)++;
             for (int corner = 0; corner < 3; corner++) {
                 std::array<float, 3> vertex;
-                for (int axis = 0; axis < 3; axis++) vertex[axis] = block.vertex[corner][axis][place];
-                if (id != OPAL_NONE) box.add(vertex);
-                const auto &expected = id != OPAL_NONE           ? soup.vertices[soup.corners[id][corner]]
+                for (int axis = 0; axis < 3; axis++)
+                    vertex[axis] = block.vertex[corner][axis][place];
+                if (id != OPAL_NONE)
+                    box.add(vertex);
+                const auto &expected = id != OPAL_NONE            ? soup.vertices[soup.corners[id][corner]]
                                        : block.id[0] != OPAL_NONE ? soup.vertices[soup.corners[block.id[0]][0]]
                                                                   : std::array<float, 3>{};
-                if (vertex != expected) FAIL("vertex of place " << place);
+                if (vertex != expected)
+                    FAIL("vertex of place " << place);
             }
         }
         return box;
@@ -230,9 +268,11 @@ void cut_in_halves(BinaryTree &tree, uint index, bool ordered) {
     BinaryNode &node = tree.nodes[index];
     const auto set = std::span(tree.references).subspan(node.first, node.count);
     node.box = Box::empty();
-    for (const Reference &reference : set) node.box.add(reference.box);
+    for (const Reference &reference : set)
+        node.box.add(reference.box);
     node.left = 0;
-    if (node.count <= BLOCK_SIZE) return;
+    if (node.count <= BLOCK_SIZE)
+        return;
     const uint half = ordered ? uint(halve(set)) : node.count / 2;
     node.left = tree.node_count;
     tree.node_count += 2;
@@ -244,7 +284,8 @@ void cut_in_halves(BinaryTree &tree, uint index, bool ordered) {
 
 double cost_of_halves(const TriangleSoup &soup, bool ordered) {
     BinaryTree tree = build_binary_tree(soup); // for its references
-    if (!ordered) std::shuffle(tree.references.begin(), tree.references.end(), std::mt19937(1));
+    if (!ordered)
+        std::shuffle(tree.references.begin(), tree.references.end(), std::mt19937(1));
     tree.nodes[0] = {Box::empty(), 0, uint(soup.corners.size()), 0};
     tree.node_count = 1;
     cut_in_halves(tree, 0, ordered);
@@ -276,7 +317,8 @@ TEST_CASE("100 000 triangles, and 40 000 whose middles are one", "[bvh]") {
     check_structure(many, build_bvh(many));
     check_against_brute_force(many, 60);
     TriangleSoup one_middle;
-    for (int i = 0; i < 40000; i++) add_triangle(one_middle, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
+    for (int i = 0; i < 40000; i++)
+        add_triangle(one_middle, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
     check_structure(one_middle, build_bvh(one_middle));
 }
 
@@ -292,14 +334,16 @@ TEST_CASE("the tree is the same whichever thread builds which part", "[bvh]") {
     const TriangleSoup soup = random_soup(70000, 0.02f, 9);
     const Bvh a = build_bvh(soup), b = build_bvh(soup);
     REQUIRE(a.nodes.size() == b.nodes.size());
-    for (std::size_t i = 0; i < a.blocks.size(); i++) REQUIRE(std::equal(a.blocks[i].id, a.blocks[i].id + 8, b.blocks[i].id));
+    for (std::size_t i = 0; i < a.blocks.size(); i++)
+        REQUIRE(std::equal(a.blocks[i].id, a.blocks[i].id + 8, b.blocks[i].id));
 }
 
 TEST_CASE("sah_cost of a tree known by hand", "[bvh]") {
     // Two unit squares of eight triangles, far apart: a node of two leaves.
     TriangleSoup soup;
     for (float x : {0.f, 10.f})
-        for (int i = 0; i < 8; i++) add_triangle(soup, {x, 0, 0}, {x, 1, 0}, {x, i % 2 ? 1.f : 0.f, 1});
+        for (int i = 0; i < 8; i++)
+            add_triangle(soup, {x, 0, 0}, {x, 1, 0}, {x, i % 2 ? 1.f : 0.f, 1});
     const Bvh bvh = build_bvh(soup);
     CHECK(bvh.nodes.size() == 1);
     CHECK(bvh.blocks.size() == 2);
@@ -319,8 +363,10 @@ TEST_CASE("trees cost what good trees cost, and bad ones more", "[bvh]") {
                           {"plane", grid(100, 0), 1.03 * 5.054},
                           {"hills", grid(100, 0.2f), 1.03 * 7.122}};
     for (const Case &c : cases) {
-        const double cost = sah_cost(build_bvh(c.soup)), halves = cost_of_halves(c.soup, true), unordered = cost_of_halves(c.soup, false);
-        INFO(c.name << ": " << cost << ", halves along the longest axis " << halves << ", halves in no order " << unordered);
+        const double cost = sah_cost(build_bvh(c.soup)), halves = cost_of_halves(c.soup, true),
+                     unordered = cost_of_halves(c.soup, false);
+        INFO(c.name << ": " << cost << ", halves along the longest axis " << halves << ", halves in no order "
+                    << unordered);
         CHECK(cost <= c.limit);
         CHECK(halves > cost);
         CHECK(unordered > 2 * c.limit);

@@ -35,16 +35,19 @@ double error_of(const AliasTable &table, const std::vector<double> &weights) {
 } // namespace
 
 TEST_CASE("an alias table draws what the weights say", "[distribution]") {
-    const std::vector<double> weights = GENERATE(std::vector<double>{3}, std::vector<double>{1, 1, 1, 1}, std::vector<double>{0, 2, 0, 1},
-                                                 std::vector<double>{1e-300, 3e-300}, std::vector<double>{1e308, 1e308, 1e307});
+    const std::vector<double> weights =
+        GENERATE(std::vector<double>{3}, std::vector<double>{1, 1, 1, 1}, std::vector<double>{0, 2, 0, 1},
+                 std::vector<double>{1e-300, 3e-300}, std::vector<double>{1e308, 1e308, 1e307});
     const AliasTable table = build_alias_table(weights);
     std::vector<double> scaled = weights; // whose sum is finite
-    for (double &weight : scaled) weight /= *std::max_element(weights.begin(), weights.end());
+    for (double &weight : scaled)
+        weight /= *std::max_element(weights.begin(), weights.end());
     CHECK(error_of(table, scaled) < 1e-15);
     for (std::size_t i = 0; i < weights.size(); i++) {
         CHECK((table.accept[i] >= 0 && table.accept[i] <= 1));
         CHECK(table.other[i] < weights.size());
-        if (weights[i] == 0) CHECK(drawn(table)[i] == 0);
+        if (weights[i] == 0)
+            CHECK(drawn(table)[i] == 0);
     }
 }
 
@@ -52,7 +55,8 @@ TEST_CASE("an alias table of 100 000 weights over 12 decades", "[distribution]")
     std::mt19937 random(7);
     std::uniform_real_distribution<double> decade(-12, 0);
     std::vector<double> weights(100000);
-    for (double &weight : weights) weight = std::pow(10.0, decade(random));
+    for (double &weight : weights)
+        weight = std::pow(10.0, decade(random));
     const AliasTable table = build_alias_table(weights);
 
     CHECK(std::abs(std::accumulate(table.probability.begin(), table.probability.end(), 0.0) - 1) < 1e-11);
@@ -60,7 +64,8 @@ TEST_CASE("an alias table of 100 000 weights over 12 decades", "[distribution]")
     // A small weight is right relative to itself, not to the sum.
     const std::vector<double> got = drawn(table);
     for (std::size_t i = 0; i < weights.size(); i++)
-        if (std::abs(got[i] / table.probability[i] - 1) > 1e-9) FAIL("index " << i << ": " << got[i] << ", not " << table.probability[i]);
+        if (std::abs(got[i] / table.probability[i] - 1) > 1e-9)
+            FAIL("index " << i << ": " << got[i] << ", not " << table.probability[i]);
 }
 
 TEST_CASE("the error of a wrong alias table is seen", "[distribution]") {

@@ -1,0 +1,111 @@
+// The tables of lights.
+#include "flatten/geometry.h"
+#include "support/plain_scenes.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+using namespace opal;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+double luminance(Color c) { return 0.212671 * c[0] + 0.715160 * c[1] + 0.072169 * c[2]; }
+
+} // namespace
+
+TEST_CASE("a light of slivers down to the smallest triangle", "[emitters]") {
+    // Widths over many decades: what is kept has an area, and the table of areas adds up.
+    TriangleMesh mesh;
+    std::mt19937 random(5);
+    for (unsigned i = 0; i < 2000; i++) {
+        const double width = std::pow(10.0, -12.0 * i / 2000), y = double(random()) / 4294967296.0;
+        mesh.positions.insert(mesh.positions.end(), {{0, y, 0}, {1, y, 0}, {0, y + width, 0}});
+        mesh.triangles.push_back({{{3 * i, OPAL_NONE}, {3 * i + 1, OPAL_NONE}, {3 * i + 2, OPAL_NONE}}});
+    }
+    const FlatScene scene = flatten(scene_of({light(mesh, {1, 1, 1})}), 8);
+    CHECK(scene.triangles.size() > 1000);
+    CHECK(scene.triangles.size() < 2000);
+    REQUIRE(scene.light_triangles.size() == scene.triangles.size());
+    double sum = 0, area = 0;
+    for (const LightTriangle &row : scene.light_triangles) {
+        const double own =
+            length(normal_of(vertex(scene, row.slot, 0), vertex(scene, row.slot, 1), vertex(scene, row.slot, 2))) / 2;
+        CHECK(own > 0);
+        CHECK(row.probability == Approx(own / scene.emitters[0].area).epsilon(1e-6));
+        CHECK((row.accept >= 0 && row.accept <= 1 && row.other < scene.emitters[0].count));
+        sum += row.probability;
+        area += own;
+    }
+    CHECK(sum == Approx(1).epsilon(1e-6));
+    CHECK(area == Approx(scene.emitters[0].area).epsilon(1e-6));
+}
+
+TEST_CASE("emitters of each kind, in the flattened units", "[emitters]") {
+    const Color bright{1, 2, 3}, power{100, 50, 20};
+    SceneDescription description = scene_of({
+        diffuse(Parallelogram{{-8, -8, 0}, {16, 0, 0}, {0, 16, 0}}),                                  // scale 1/8
+        light(mesh_of({{0, 0, 1}, {4, 0, 1}, {0, 4, 1}, {4, 1, 1}}, {{0, 1, 2}, {0, 1, 3}}), bright), // areas 8 and 2
+        light(Parallelogram{{0, 0, 2}, {2, 0, 0}, {0, 3, 0}}, bright),                                // area 6
+        light(one_triangle, {0, 0, 0}),
+    });
+    description.point_lights = {{{4, 0, 0}, power, {}}, {{0, 0, 0}, {0, 0, 0}, {}}};
+
+    SECTION("by power and by area") {
+        description.strategy[AXIS_emitter_choice] = CHOICE_emitter_choice_power;
+        description.strategy[AXIS_triangle_choice] = CHOICE_triangle_choice_area;
+        const FlatScene scene = flatten(description, 1);
+        REQUIRE(scene.scale == 0.125);
+        const double center_z = scene.center.z;
+        REQUIRE(scene.emitters.size() == 3);
+        CHECK(scene.settings.emitter_count == 3);
+        CHECK((scene.meshes[0].emitter == OPAL_NONE && scene.meshes[1].emitter == 0 && scene.meshes[2].emitter == 1 &&
+               scene.meshes[3].emitter == OPAL_NONE));
+        const EmitterRecord &mesh = scene.emitters[0], &quad = scene.emitters[1], &point = scene.emitters[2];
+
+        CHECK((mesh.kind == EMITTER_mesh && mesh.first == 0 && mesh.count == 2));
+        CHECK(mesh.area == Approx(10. / 64));
+        CHECK((mesh.radiance[0] == 1 && mesh.radiance[2] == 3));
+        CHECK(scene.light_triangles[0].probability == Approx(0.8));
+        CHECK(scene.light_triangles[1].probability == Approx(0.2));
+        for (const LightTriangle &row : scene.light_triangles) // each row leads to its own triangle
+            CHECK(
+                length(normal_of(vertex(scene, row.slot, 0), vertex(scene, row.slot, 1), vertex(scene, row.slot, 2))) /
+                    2 ==
+                Approx(row.probability * 10. / 64));
+
+        CHECK((quad.kind == EMITTER_parallelogram && quad.u[0] == 0.25f && quad.v[1] == 0.375f &&
+               quad.origin[2] == float((2 - center_z) / 8)));
+        CHECK(quad.area == Approx(6. / 64));
+
+        CHECK(point.kind == EMITTER_point);
+        CHECK(point.origin[0] == 0.5f);
+        // Intensity over squared distance is the same in both units.
+        CHECK(point.radiance[0] / (0.5 * 0.5) == Approx(100 / (4 * pi) / (4. * 4.)));
+
+        const double powers[] = {pi * luminance(bright) * 10, pi * luminance(bright) * 6, luminance(power)};
+        const double all = powers[0] + powers[1] + powers[2];
+        double kept[3] = {};
+        for (int i = 0; i < 3; i++) {
+            CHECK(scene.emitters[i].probability == Approx(powers[i] / all));
+            kept[i] += scene.emitters[i].accept / 3;
+            kept[scene.emitters[i].other] += (1 - scene.emitters[i].accept) / 3;
+        }
+        for (int i = 0; i < 3; i++)
+            CHECK(kept[i] == Approx(powers[i] / all));
+    }
+    SECTION("all alike") {
+        description.strategy[AXIS_emitter_choice] = CHOICE_emitter_choice_uniform;
+        description.strategy[AXIS_triangle_choice] = CHOICE_triangle_choice_uniform;
+        const FlatScene scene = flatten(description, 8);
+        for (const EmitterRecord &emitter : scene.emitters)
+            CHECK(emitter.probability == Approx(1. / 3));
+        for (const LightTriangle &row : scene.light_triangles)
+            CHECK(row.probability == 0.5f);
+        CHECK(scene.emitters[0].area == Approx(10. / 64));
+    }
+}

@@ -1,0 +1,92 @@
+// What the kernel is compiled with, and the materials that decide it.
+#include "support/plain_scenes.h"
+
+#include <catch2/catch.hpp>
+
+#include <set>
+
+using namespace opal;
+
+TEST_CASE("equal materials are one record, and --hemisphere is written into them", "[features]") {
+    SceneDescription description = scene_of({diffuse(one_triangle, 0.5f), diffuse(one_triangle, 0.25f),
+                                             diffuse(one_triangle, 0.5f), diffuse(one_triangle, 0.5f, true)});
+    FlatScene scene = flatten(description, 8);
+    CHECK(scene.bsdfs.size() == 3);
+    CHECK((scene.meshes[0].bsdf == scene.meshes[2].bsdf && scene.meshes[0].bsdf != scene.meshes[1].bsdf));
+    CHECK(scene.bsdfs[scene.meshes[3].bsdf].u.diffuse.use_cosine == 1);
+    CHECK(scene.features.axes[AXIS_hemisphere] == CHOICE_hemisphere_material);
+
+    description.strategy[AXIS_hemisphere] = CHOICE_hemisphere_cosine;
+    scene = flatten(description, 8);
+    CHECK(scene.bsdfs.size() == 2);
+    for (const BsdfRecord &record : scene.bsdfs)
+        CHECK(record.u.diffuse.use_cosine == 1);
+
+    description.strategy[AXIS_hemisphere] = CHOICE_hemisphere_material;
+    description.meshes.pop_back(); // now all agree
+    CHECK(flatten(description, 8).features.axes[AXIS_hemisphere] == CHOICE_hemisphere_uniform);
+}
+
+TEST_CASE("features are what the scene and the strategy ask for, each with a reason", "[features]") {
+    SceneDescription description = scene_of({diffuse(one_triangle), light(one_triangle, {1, 1, 1})});
+    description.meshes[0].bsdf.record = {};
+    description.meshes[0].bsdf.record.kind = BSDF_mirror;
+    description.point_lights = {{{1, 1, 1}, {1, 1, 1}, {}}};
+    const auto on = [](const SceneDescription &scene) {
+        std::set<std::string> names;
+        for (const Feature &feature : flatten(scene, 8).features.list) {
+            CHECK_FALSE(feature.reason.empty());
+            if (feature.on)
+                names.insert(feature.name);
+        }
+        return names;
+    };
+    using Names = std::set<std::string>;
+    CHECK(on(description) == Names{"bsdf_diffuse", "bsdf_mirror", "emitter_mesh", "emitter_point", "many_emitters"});
+    CHECK(reason(flatten(description, 8), "bsdf_mirror") == "1 of 2 meshes");
+
+    SECTION("in the order of the list") {
+        std::vector<std::string> names;
+        for (const Feature &feature : flatten(description, 8).features.list)
+            names.push_back(feature.name);
+#define OPAL_FEATURE_ROW(name) #name,
+        CHECK(names == std::vector<std::string>{OPAL_FEATURES});
+#undef OPAL_FEATURE_ROW
+        CHECK_THROWS_AS(flatten(description, 8).features["no_such"], std::logic_error);
+    }
+    SECTION("nothing of BSDFs and emitters for the integrators that ask neither") {
+        for (int integrator : {CHOICE_integrator_normals, CHOICE_integrator_ao, CHOICE_integrator_simple}) {
+            description.strategy[AXIS_integrator] = integrator;
+            CHECK(on(description).empty());
+        }
+    }
+    SECTION("no points where light is found by hitting it") {
+        description.strategy[AXIS_lighting] = CHOICE_lighting_bsdf;
+        CHECK(on(description).count("emitter_point") == 0);
+        CHECK(on(description).count("emitter_mesh") == 1);
+        description.strategy[AXIS_integrator] = CHOICE_integrator_whitted; // samples lights whatever the axis says
+        CHECK(on(description).count("emitter_point") == 1);
+    }
+    SECTION("filters beyond the pixel") {
+        description.camera.filter = {FILTER_box, 0.5, 0.5, 0, 0, true};
+        CHECK(on(description).count("wide_filter") == 0);
+        description.camera.filter.radius = 0.75;
+        CHECK(on(description).count("wide_filter") == 1);
+        description.camera.filter = {FILTER_tent, 0.5, 0.5, 0, 0, true};
+        CHECK(on(description).count("wide_filter") == 1);
+    }
+    SECTION("everything without specialisation") {
+        description.strategy.specialise = false;
+        const Features features = flatten(description, 8).features;
+        for (const Feature &feature : features.list)
+            CHECK(feature.on);
+        for (int axis : features.axes)
+            CHECK(axis == -1);
+    }
+    SECTION("axes are compiled in") {
+        const Features features = flatten(description, 8).features;
+        CHECK(features.axes[AXIS_lighting] == CHOICE_lighting_mis);
+        for (const std::string &text : features.axis_reasons)
+            CHECK_FALSE(text.empty());
+    }
+}

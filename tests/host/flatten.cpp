@@ -1,0 +1,208 @@
+// From a scene as written to the tables of the device: positions, triangles, settings.
+#include "base/log.h"
+#include "flatten/geometry.h"
+#include "support/plain_scenes.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace opal;
+
+TEST_CASE("the scene is moved and scaled into [-1, 1], by a power of two", "[flatten]") {
+    for (double size : {1e-9, 0.3, 1.0, 2.0, 550.0, 1e12}) {
+        const Vec3 corner{1e3 * size, -7 * size, 0};
+        const Frame frame = find_frame(scene_of({diffuse(Parallelogram{corner, {size, 0, 0}, {0, size / 3, 0}})}));
+        int exponent;
+        CHECK(std::frexp(frame.scale, &exponent) == 0.5);
+        const double half = 0.5 * size * frame.scale;
+        CHECK(half > 0.5 - 1e-9);
+        CHECK(half <= 1);
+        CHECK(frame.center.x == Approx(corner.x + size / 2).epsilon(1e-14));
+    }
+    // Half of the box is 1: the scale stays 1, and a position that is a float stays itself.
+    const Frame unit = find_frame(scene_of({diffuse(mesh_of({{-1, 0, 0}, {1, 0, 0}, {0, 1, 0.25}}, {{0, 1, 2}}))}));
+    CHECK(unit.scale == 1);
+    CHECK(unit({0.75, 0.5, 0.125}) == std::array<float, 3>{0.75f, 0, 0});
+}
+
+TEST_CASE("positions far from the world's origin keep their digits", "[flatten]") {
+    const double far = 1e6, step = 1e-3; // in float, 1e6 + 1e-3 is 1e6
+    const FlatScene scene =
+        flatten(scene_of({diffuse(mesh_of({{far, 0, 0}, {far + step, 0, 0}, {far, step, 0}}, {{0, 1, 2}}))}), 8);
+    REQUIRE(scene.triangles.size() == 1);
+    const auto a = vertex(scene, 0, 0), b = vertex(scene, 0, 1);
+    CHECK((double(b[0]) - a[0]) / scene.scale == Approx(step).epsilon(1e-6));
+}
+
+TEST_CASE("what no triangle uses does not stretch the scene; point lights do", "[flatten]") {
+    TriangleMesh mesh = one_triangle;
+    mesh.positions.push_back({1e9, 0, 0});
+    SceneDescription scene = scene_of({diffuse(mesh)});
+    CHECK(find_frame(scene).scale == 2);
+    scene.point_lights.push_back({{0, 0, 7}, {1, 1, 1}, {}});
+    CHECK(find_frame(scene).scale == 0.25);
+}
+
+TEST_CASE("a scene of nothing", "[flatten]") {
+    for (int lanes : {1, 8}) {
+        const FlatScene scene = flatten(scene_of({}), lanes);
+        CHECK(scene.scale == 1);
+        CHECK(scene.triangles.empty());
+        CHECK(scene.blocks.size() == 1);
+        CHECK(scene.blocks[0].id[0] == OPAL_NONE);
+        CHECK(scene.settings.emitter_count == 0);
+        CHECK(scene.features["tree"] == (lanes == 1));
+        if (lanes == 1)
+            CHECK(scene.settings.root == OPAL_LEAF);
+    }
+}
+
+TEST_CASE("the camera's columns, film and clips", "[flatten]") {
+    SceneDescription scene = scene_of({diffuse(Parallelogram{{-4, -4, 0}, {8, 0, 0}, {0, 8, 0}})}); // scale 1/4
+    Camera &camera = scene.camera;
+    camera.to_world.rows = {{{-2, 0, 0, 1}, {0, 4, 0, 2}, {0, 0, 2, 3}, {0, 0, 0, 1}}}; // mirrored, stretched, moved
+    camera.width = 400;
+    camera.height = 100;
+    camera.fov = 90;
+    camera.near_clip = 0.5;
+    camera.far_clip = 1e300;
+    const Settings s = flatten(scene, 8).settings;
+    CHECK((s.camera_origin[0] == 0.25f && s.camera_origin[1] == 0.5f && s.camera_origin[2] == 0.75f));
+    CHECK((s.camera_left[0] == -1 && s.camera_up[1] == 2 && s.camera_forward[2] == 1));
+    CHECK(s.tan_half_x == Approx(1));
+    CHECK(s.tan_half_y == Approx(0.25));
+    CHECK(s.near_clip == 0.5f * 2 / 4);
+    CHECK(std::isfinite(s.far_clip));
+    CHECK((s.width == 400 && s.height == 100));
+
+    // The point at camera depth near_clip along a film direction, by both ways.
+    const double sx = 0.1, sy = 0.7, x = (1 - 2 * sx) * 1, y = (1 - 2 * sy) * 0.25;
+    const Vec3 world = Vec3{-2 * x, 4 * y, 2} * 0.5;
+    for (int i = 0; i < 3; i++) {
+        const double d = s.camera_left[i] * x + s.camera_up[i] * y + s.camera_forward[i];
+        CHECK(s.near_clip * d == Approx(world[i] / 4));
+    }
+}
+
+TEST_CASE("every number of the scene reaches the settings", "[flatten]") {
+    SceneDescription scene = scene_of({diffuse(Parallelogram{{-4, -4, 0}, {8, 0, 0}, {0, 8, 0}})}); // scale 1/4
+    scene.camera.filter = {FILTER_mitchell, 3, 0.75, 0.25, 0.125, true};
+    scene.spp = 77;
+    scene.normals_signed = true;
+    scene.simple_light = {{4, 8, 0}, {16, 32, 64}};
+    scene.strategy.max_depth = 9;
+    scene.strategy.rr_depth = 5;
+    scene.strategy.rr_prob = 0.25;
+    scene.strategy[AXIS_sampler] = CHOICE_sampler_sobol;
+    const Settings s = flatten(scene, 8).settings;
+    CHECK((s.filter == FILTER_mitchell && s.filter_radius == 3 && s.filter_stddev == 0.75f && s.filter_b == 0.25f &&
+           s.filter_c == 0.125f));
+    CHECK((s.spp == 77 && s.normals_signed == 1 && s.max_depth == 9 && s.rr_depth == 5 && s.rr_prob == 0.25f));
+    CHECK((s.light_position[0] == 1 && s.light_position[1] == 2 && s.light_energy[0] == 1 && s.light_energy[2] == 4));
+    CHECK(s.choices[AXIS_sampler] == CHOICE_sampler_sobol);
+    CHECK(s.choices[AXIS_integrator] == CHOICE_integrator_path);
+}
+
+TEST_CASE("tiny scenes share corners and need no tree", "[flatten]") {
+    // A cube of 12 triangles, each face a parallelogram: 24 corners, 8 distinct ones.
+    std::vector<Mesh> faces;
+    for (Vec3 o : {Vec3{0, 0, 0}, Vec3{1, 1, 1}}) {
+        const double s = o.x > 0 ? -1 : 1;
+        faces.push_back(diffuse(Parallelogram{o, {s, 0, 0}, {0, s, 0}}));
+        faces.push_back(diffuse(Parallelogram{o, {0, s, 0}, {0, 0, s}}));
+        faces.push_back(diffuse(Parallelogram{o, {0, 0, s}, {s, 0, 0}}));
+    }
+    const FlatScene scene = flatten(scene_of(faces), 8);
+    CHECK(scene.nodes.empty());
+    CHECK_FALSE(scene.features["tree"]);
+    CHECK(scene.settings.tiny_triangle_count == 12);
+    CHECK(scene.settings.tiny_vertex_count == 8);
+    REQUIRE(scene.tiny_triangles.size() == 12);
+    for (const TinyTriangle &triangle : scene.tiny_triangles)
+        for (int corner = 0; corner < 3; corner++) {
+            const float *position = &scene.tiny_vertices[3 * triangle.corner[corner]];
+            CHECK(vertex(scene, triangle.slot, corner) == std::array<float, 3>{position[0], position[1], position[2]});
+            CHECK(scene.blocks[triangle.slot / 8].id[triangle.slot % 8] ==
+                  uint(&triangle - scene.tiny_triangles.data()));
+        }
+
+    SECTION("but for few lanes, many triangles, many vertices, or a kernel that can do everything") {
+        CHECK(flatten(scene_of(faces), 1).features["tree"]);
+        CHECK(flatten(scene_of(faces), 1).tiny_triangles.empty());
+        SceneDescription general = scene_of(faces);
+        general.strategy.specialise = false;
+        CHECK_FALSE(flatten(general, 8).nodes.empty());
+        std::vector<Mesh> many, scattered;
+        for (int i = 0; i < 25; i++)
+            many.push_back(diffuse(Parallelogram{{0, 0, 0.1 * i}, {1, 0, 0}, {0, 1, 0}}));
+        for (int i = 0; i < 33; i++)
+            scattered.push_back(diffuse(mesh_of({{0, 0, 0.1 * i}, {1, 0, 0.1 * i}, {0, 1, 0.1 * i}}, {{0, 1, 2}})));
+        CHECK(flatten(scene_of(many), 8).features["tree"]);
+        CHECK(flatten(scene_of(scattered), 8).features["tree"]);
+        many.pop_back();
+        scattered.pop_back();
+        CHECK_FALSE(flatten(scene_of(many), 8).features["tree"]);
+        CHECK_FALSE(flatten(scene_of(scattered), 8).features["tree"]);
+    }
+}
+
+TEST_CASE("a parallelogram is two triangles that face u x v", "[flatten]") {
+    const FlatScene scene =
+        flatten(scene_of({diffuse(Parallelogram{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}})}), 8); // u x v = -y
+    REQUIRE(scene.triangles.size() == 2);
+    double area = 0;
+    for (uint slot : {0u, 1u}) {
+        const Vec3 normal = normal_of(vertex(scene, slot, 0), vertex(scene, slot, 1), vertex(scene, slot, 2));
+        CHECK(normal.y < 0);
+        CHECK((normal.x == 0 && normal.z == 0));
+        area += length(normal) / 2;
+    }
+    CHECK(area / (scene.scale * scene.scale) == Approx(1));
+}
+
+TEST_CASE("vertex normals are numbered across meshes; a triangle that lacks one is flat", "[flatten]") {
+    TriangleMesh smooth = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 3, 2}});
+    smooth.normals = {{0, 0, 1}, {0.6, 0, 0.8}};
+    for (auto &corner : smooth.triangles[0])
+        corner.normal = 1;
+    smooth.triangles[1][0].normal = 0; // and no other
+    const FlatScene scene = flatten(scene_of({diffuse(smooth), diffuse(smooth), diffuse(one_triangle)}), 8);
+    CHECK(scene.normals == std::vector<float>{0, 0, 1, 0.6f, 0, 0.8f, 0, 0, 1, 0.6f, 0, 0.8f});
+    REQUIRE(scene.triangles.size() == 5);
+    for (int corner = 0; corner < 3; corner++) {
+        CHECK(scene.triangles[0].normal[corner] == 1);
+        CHECK(scene.triangles[1].normal[corner] == OPAL_NONE);
+        CHECK(scene.triangles[2].normal[corner] == 3);
+        CHECK(scene.triangles[4].normal[corner] == OPAL_NONE);
+    }
+    CHECK((scene.triangles[1].mesh == 0 && scene.triangles[3].mesh == 1 && scene.triangles[4].mesh == 2));
+    CHECK(scene.features["shading_normals"]);
+    CHECK(reason(scene, "shading_normals") == "2 of 5 triangles");
+    CHECK_FALSE(flatten(scene_of({diffuse(one_triangle)}), 8).features["shading_normals"]);
+}
+
+TEST_CASE("triangles that float makes degenerate are dropped everywhere and counted", "[flatten]") {
+    TriangleMesh mesh =
+        mesh_of({{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, {0.3, 0, 0.5}, {0.3 + 1e-12, 0, 0.5}, {0.3, 1e-12, 0.5}},
+                {{3, 4, 5}, {0, 1, 2}, {0, 1, 4}});
+    const std::size_t before = warnings().size();
+    const FlatScene scene = flatten(scene_of({light(mesh, {1, 1, 1})}), 1);
+    REQUIRE(warnings().size() == before + 1);
+    CHECK(warnings().back().find("1 of 3 triangles") != std::string::npos);
+    CHECK(scene.triangles.size() == 2);
+    CHECK(scene.light_triangles.size() == 2);
+    uint kept = 0;
+    for (const TriangleBlock &block : scene.blocks)
+        kept += uint(std::count_if(block.id, block.id + 8, [](uint id) { return id != OPAL_NONE; }));
+    CHECK(kept == 2);
+
+    // A light of which nothing is left is none.
+    const FlatScene gone =
+        flatten(scene_of({light(mesh_of({{0.3, 0, 0}, {0.3 + 1e-12, 0, 0}, {0.3, 1e-12, 0}}, {{0, 1, 2}}), {1, 1, 1}),
+                          diffuse(Parallelogram{{-1, -1, 0}, {2, 0, 0}, {0, 2, 0}})}),
+                8);
+    CHECK(gone.emitters.empty());
+    CHECK(gone.meshes[0].emitter == OPAL_NONE);
+}
