@@ -1,12 +1,14 @@
 // From a scene as written to the tables of the device: positions, triangles, settings.
 #include "base/log.h"
 #include "flatten/geometry.h"
+#include "scene/load.h"
 #include "support/plain_scenes.h"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 using namespace opal;
 
@@ -205,4 +207,33 @@ TEST_CASE("triangles that float makes degenerate are dropped everywhere and coun
                 8);
     CHECK(gone.emitters.empty());
     CHECK(gone.meshes[0].emitter == OPAL_NONE);
+}
+
+TEST_CASE("the scenes that people have", "[flatten]") {
+    const std::filesystem::path folder = std::filesystem::path(OPAL_SOURCE_DIR) / "../shared/scenes";
+    if (!std::filesystem::exists(folder)) {
+        WARN("no ../shared/scenes here");
+        return;
+    }
+    int scenes = 0;
+    for (const auto &entry : std::filesystem::recursive_directory_iterator(folder)) {
+        if (entry.path().extension() != ".xml") continue;
+        INFO(entry.path());
+        scenes++;
+        const SceneDescription description = load_scene(entry.path());
+        std::size_t triangles = 0, lights = 0;
+        for (const Mesh &mesh : description.meshes) {
+            const auto *shape = std::get_if<TriangleMesh>(&mesh.shape);
+            triangles += shape ? shape->triangles.size() : 2;
+            lights += mesh.radiance.has_value();
+        }
+        for (int lanes : {1, 16}) {
+            const FlatScene scene = flatten(description, lanes);
+            CHECK(scene.triangles.size() == triangles);
+            CHECK(scene.emitters.size() == lights);
+            CHECK(scene.features["tree"] == (lanes == 1 || triangles > OPAL_TINY_TRIANGLES));
+            if (triangles > 1000) CHECK(scene.sah_cost < 6);
+        }
+    }
+    CHECK(scenes > 0);
 }
