@@ -39,7 +39,7 @@ def meshes():
             "cbox_tall_block": (block(TALL_TOP), "Cornell box: tall block")}
 
 
-def cbox(variant, purpose, integrator, cosine=True, short="block", tall="diffuse", spp=64):
+def cbox(variant, purpose, integrator, cosine=True, short="block", tall="block", spp=64):
     title = "The Cornell box from the published measurements (Cornell Program of Computer Graphics):\n"
     scene = Scene(f"cbox_{variant}", title + purpose, integrator, spp)
     scene.camera((278, 273, -800), (278, 273, 0), math.degrees(2 * math.atan(0.025 / 2 / 0.035)), 400, 400)
@@ -47,7 +47,10 @@ def cbox(variant, purpose, integrator, cosine=True, short="block", tall="diffuse
     scene.mesh("cbox_white", white)
     scene.mesh("cbox_red", diffuse(*RED, cosine))
     scene.mesh("cbox_green", diffuse(*GREEN, cosine))
-    scene.mesh("cbox_tall_block", white if tall == "diffuse" else bsdf("mirror"))
+    if tall == "block":
+        scene.mesh("cbox_tall_block", white)
+    else:
+        scene.mesh("sphere_5120", bsdf("mirror"), scaling(120), translate(395, 121, 320))
     if short == "block":
         scene.mesh("cbox_short_block", white)
     else:
@@ -63,7 +66,7 @@ def scenes():
         cbox("cosine", "directions drawn in proportion to their cosine.", bsdf_only),
         cbox("nee", "next-event estimation.", path_tracer(mis=False)),
         cbox("mis", "next-event estimation and BSDF sampling by multiple importance sampling.", path_tracer()),
-        cbox("mirror", "the tall block is a mirror.", path_tracer(), tall="mirror"),
+        cbox("mirror", "a mirror sphere in place of the tall block.", path_tracer(), tall="sphere"),
         cbox("dielectric", "a glass sphere in place of the short block; its caustic is the noise that stays.", path_tracer(),
              short="sphere", spp=256),
     ]

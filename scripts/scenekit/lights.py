@@ -120,7 +120,7 @@ Choosing an emitter by its power follows that; choosing uniformly spends the sam
     for k in range(64):
         x, z = 1.7 * (k % 8 - 3.5), 1.7 * (k // 8 - 3.5)
         height = 0.5 + 0.25 * (k * 11 % 5)
-        power = 60 * 10 ** (-4 * (k * 29 % 64) / 63)
+        power = 110 * 10 ** (-4 * (k * 29 % 64) / 63)
         tint = ((1, 0.8, 0.55), (0.7, 0.85, 1), (1, 0.95, 0.85))[k % 3]
         scene.mesh("cube", GREY, scaling(0.3, height, 0.3), rotate((0, 1, 0), 13 * k), translate(x, -0.01, z))
         scene.mesh("sphere_80_flat", BLACK, scaling(r), translate(x, height + r + 0.01, z),
