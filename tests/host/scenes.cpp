@@ -17,7 +17,8 @@ const std::filesystem::path folder = std::filesystem::path(OPAL_SOURCE_DIR) / "s
 std::vector<std::filesystem::path> scene_files() {
     std::vector<std::filesystem::path> files;
     for (const auto &entry : std::filesystem::directory_iterator(folder))
-        if (entry.path().extension() == ".xml") files.push_back(entry.path());
+        if (entry.path().extension() == ".xml")
+            files.push_back(entry.path());
     return files;
 }
 
@@ -59,7 +60,8 @@ size_t open_edges(const TriangleMesh &mesh) {
 
 double volume(const TriangleMesh &mesh) {
     double sum = 0;
-    for (const Facet &t : triangles_of(mesh)) sum += dot(t.corner[0], t.cross_product()) / 6;
+    for (const Facet &t : triangles_of(mesh))
+        sum += dot(t.corner[0], t.cross_product()) / 6;
     return sum;
 }
 
@@ -72,15 +74,18 @@ TEST_CASE("Every scene of ours loads, holds a light, and has vn on the side of i
     for (const auto &file : scene_files()) {
         INFO(file);
         SceneDescription scene = load_scene(file);
-        CHECK(std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh &m) { return m.radiance.has_value(); }));
+        CHECK(std::any_of(scene.meshes.begin(), scene.meshes.end(),
+                          [](const Mesh &m) { return m.radiance.has_value(); }));
         double side = file.stem() == "furnace" ? -1 : 1; // the furnace is wound outwards and its vn point inwards
         for (const Mesh &mesh : scene.meshes) {
             const auto *triangles = std::get_if<TriangleMesh>(&mesh.shape);
-            if (!triangles) continue;
+            if (!triangles)
+                continue;
             INFO(mesh.name);
             size_t wrong = 0;
             for (const Facet &t : triangles_of(*triangles))
-                for (const Vec3 *n : t.normal) wrong += n && !(side * dot(*n, t.cross_product()) > 0);
+                for (const Vec3 *n : t.normal)
+                    wrong += n && !(side * dot(*n, t.cross_product()) > 0);
             CHECK(wrong == 0);
         }
     }
@@ -91,7 +96,8 @@ TEST_CASE("Glass is closed and its normals point outwards", "[scenes]") {
     for (const auto &file : scene_files()) {
         SceneDescription scene = load_scene(file);
         for (const Mesh &mesh : scene.meshes) {
-            if (mesh.bsdf.record.kind != BSDF_dielectric) continue;
+            if (mesh.bsdf.record.kind != BSDF_dielectric)
+                continue;
             INFO(file << " " << mesh.name);
             ++found;
             const auto &triangles = std::get<TriangleMesh>(mesh.shape);
@@ -110,7 +116,8 @@ TEST_CASE("Parallelogram lights face the scene", "[scenes]") {
         Vec3 eye = scene.camera.to_world.point({0, 0, 0}), ahead = scene.camera.to_world.vector({0, 0, 1});
         for (const Mesh &mesh : scene.meshes) {
             const auto *light = std::get_if<Parallelogram>(&mesh.shape);
-            if (!light || !mesh.radiance) continue;
+            if (!light || !mesh.radiance)
+                continue;
             Vec3 front = cross(light->u, light->v), middle = light->origin + light->u * 0.5 + light->v * 0.5;
             Vec3 target = eye + ahead * dot(middle - eye, ahead);
             CHECK(dot(front, target - middle) > 0);
@@ -122,23 +129,28 @@ TEST_CASE("The scenes about choosing lights are as uneven as they say", "[scenes
     SECTION("64 lamps, powers over four decades") {
         std::vector<double> powers;
         for (const Mesh &mesh : load("many_lights").meshes)
-            if (mesh.radiance) powers.push_back((*mesh.radiance)[0] * 0.212671 + (*mesh.radiance)[1] * 0.715160 + (*mesh.radiance)[2] * 0.072169);
+            if (mesh.radiance)
+                powers.push_back((*mesh.radiance)[0] * 0.212671 + (*mesh.radiance)[1] * 0.715160 +
+                                 (*mesh.radiance)[2] * 0.072169);
         REQUIRE(powers.size() == 64);
         auto [least, most] = std::minmax_element(powers.begin(), powers.end());
         CHECK(*most / *least == Approx(1e4).epsilon(1e-2));
     }
     SECTION("a mesh light with triangle areas over four decades") {
         for (const Mesh &mesh : load("spiral_light").meshes) {
-            if (!mesh.radiance) continue;
+            if (!mesh.radiance)
+                continue;
             std::set<double> areas;
-            for (const Facet &t : triangles_of(std::get<TriangleMesh>(mesh.shape))) areas.insert(t.area());
+            for (const Facet &t : triangles_of(std::get<TriangleMesh>(mesh.shape)))
+                areas.insert(t.area());
             CHECK(*areas.rbegin() / *areas.begin() > 5e3);
         }
     }
     SECTION("a room of about 50 thousand triangles") {
         size_t count = 0;
         for (const Mesh &mesh : load("mixed_room").meshes)
-            if (const auto *m = std::get_if<TriangleMesh>(&mesh.shape)) count += m->triangles.size();
+            if (const auto *m = std::get_if<TriangleMesh>(&mesh.shape))
+                count += m->triangles.size();
         CHECK(count > 45000);
         CHECK(count < 55000);
     }
