@@ -24,7 +24,6 @@ const Command commands[] = {
     {"render", "Render a scene to an EXR and a PNG", setup_render},
     {"devices", "List every OpenCL platform and device, and which one `render` takes", setup_devices},
     {"inspect", "Show what a scene holds, and what its kernel will be compiled with and why", setup_inspect},
-    {"render", "Render a scene to an EXR and a PNG", setup_render},
     {"probe-platform", hidden, setup_probe_platform},
 };
 
