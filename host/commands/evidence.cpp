@@ -55,8 +55,8 @@ void write_both(const std::filesystem::path &folder, const std::string &name, co
 
 } // namespace
 
-stats::Estimate estimate_of(const Image &image, double dof) {
-    stats::Estimate estimate{image.width, image.height, {}, {}, dof};
+stats::Estimate estimate_of(const Image &image, double samples, double dof) {
+    stats::Estimate estimate{image.width, image.height, {}, {}, samples, dof};
     for (const char *name : channels) {
         estimate.mean.emplace_back(image.get(name).values);
         estimate.variance.emplace_back(image.get(std::string("variance.") + name).values);

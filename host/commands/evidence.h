@@ -10,7 +10,7 @@ namespace opal {
 
 // The layers R, G, B and variance.R, .G, .B as an estimate; it points into the image. `dof`: samples a pixel - 1, or
 // batches - 1. Error naming the layer that is missing.
-stats::Estimate estimate_of(const Image &image, double dof);
+stats::Estimate estimate_of(const Image &image, double samples, double dof);
 
 // Values as colours for write_png: 0 white, +limit and above red, -limit and below blue, not finite magenta.
 Image false_colour(const std::vector<float> &values, int width, int height, double limit);

@@ -37,13 +37,60 @@ BoxSums sum_box(const Estimate &e, size_t channel, const PixelBox &box) {
     return {mean.value() / n, negative ? NAN : variance.value() / (n * n), squares.value() / (n * n * n * n)};
 }
 
-TestResult compare_box(const Estimate &a, const Estimate &b, size_t channel, const PixelBox &box,
-                       const TileOptions &o) {
-    BoxSums sa = sum_box(a, channel, box), sb = sum_box(b, channel, box);
-    double variance = sa.variance + sb.variance, squares = sa.variance_squares + sb.variance_squares;
+// Raises a's variance to what b's samples would have given in a's number; see tiles.h.
+void borrow_variance(BoxSums &a, const BoxSums &b, double samples_b_over_a) {
+    if (!(a.variance < b.variance * samples_b_over_a)) // also where a's is NaN, which must stay
+        return;
+    a.variance = b.variance * samples_b_over_a;
+    a.variance_squares = b.variance_squares * samples_b_over_a * samples_b_over_a;
+}
+
+// Variance of a pixel's mean by its mean, over the pixels that have noise: how large one hit is, divided by the
+// samples.
+double quantum_of(const Estimate &e, size_t channel) {
+    CompensatedSum mean, variance;
+    for (size_t i = 0; i < e.variance[channel].size(); ++i)
+        if (e.variance[channel][i] > 0 && std::isfinite(e.variance[channel][i]) && std::isfinite(e.mean[channel][i])) {
+            variance.add(e.variance[channel][i]);
+            mean.add(std::abs(e.mean[channel][i]));
+        }
+    return mean.value() > 0 ? variance.value() / mean.value() : 0;
+}
+
+// Raises a variance of few hits (`own` are the sums before any other rule) to that of hits of the quantum's size.
+void allow_for_rare_hits(BoxSums &sums, const BoxSums &own, double sure_hits, double least_variance) {
+    if (own.mean * own.mean >= sure_hits * own.variance && (own.mean != 0 || sure_hits == 0))
+        return;
+    if (least_variance > sums.variance) {
+        sums.variance = least_variance;
+        sums.variance_squares = 0; // known from the whole image
+    }
+}
+
+TestResult judge(const BoxSums &a, const BoxSums &b, const TileOptions &o) {
+    double variance = a.variance + b.variance, squares = a.variance_squares + b.variance_squares;
     double dof = squares == 0 ? std::numeric_limits<double>::infinity() : variance / squares * variance;
-    double scale = std::max(std::abs(sa.mean), std::abs(sb.mean));
-    return difference_test(sa.mean - sb.mean, std::sqrt(o.variance_inflation * variance), dof, scale, o.relative_floor);
+    double scale = std::max(std::abs(a.mean), std::abs(b.mean));
+    return difference_test(a.mean - b.mean, std::sqrt(o.variance_inflation * variance), dof, scale, o.relative_floor);
+}
+
+struct Channel {
+    const Estimate &a, &b;
+    size_t index;
+    double quantum_a, quantum_b;
+};
+
+TestResult judge_tile(const Channel &c, const PixelBox &box, const TileOptions &o) {
+    const BoxSums own_a = sum_box(c.a, c.index, box), own_b = sum_box(c.b, c.index, box);
+    BoxSums a = own_a, b = own_b;
+    if (c.a.samples > 0 && c.b.samples > 0) {
+        borrow_variance(a, own_b, c.b.samples / c.a.samples);
+        borrow_variance(b, own_a, c.a.samples / c.b.samples);
+    }
+    double mean = std::max(std::abs(a.mean), std::abs(b.mean)) / (double(box.width) * box.height);
+    allow_for_rare_hits(a, own_a, o.sure_hits, mean * c.quantum_a);
+    allow_for_rare_hits(b, own_b, o.sure_hits, mean * c.quantum_b);
+    return judge(a, b, o);
 }
 
 // z of the same two-sided p and sign; a tile that could not be judged (NaN) is infinitely bad.
@@ -134,10 +181,12 @@ TileTest tile_test(const Estimate &a, const Estimate &b, const TileOptions &opti
     size_t tiles = size_t(t.columns) * size_t(t.rows);
     double smallest = 1;
     for (size_t channel = 0; channel < t.channels; ++channel) {
-        t.whole.push_back(compare_box(a, b, channel, {0, 0, a.width, a.height}, options));
+        const Channel both{a, b, channel, quantum_of(a, channel), quantum_of(b, channel)};
+        const PixelBox everything{0, 0, a.width, a.height};
+        t.whole.push_back(judge(sum_box(a, channel, everything), sum_box(b, channel, everything), options));
         smallest = std::min(smallest, t.whole.back().p_value);
         for (size_t tile = 0; tile < tiles; ++tile) {
-            TestResult test = compare_box(a, b, channel, tile_box(t, a, tile), options);
+            TestResult test = judge_tile(both, tile_box(t, a, tile), options);
             t.z.push_back(equivalent_z(test));
             t.p.push_back(test.p_value);
             smallest = std::min(smallest, test.p_value);

@@ -13,7 +13,8 @@ namespace opal::stats {
 struct Estimate {
     int width = 0, height = 0;
     std::vector<std::span<const float>> mean, variance;
-    double dof = 0;
+    double samples = 0; // a pixel; 0: unknown
+    double dof = 0;     // of each variance: samples (or batches) - 1; infinite where it is known
 };
 
 struct TileOptions {
@@ -22,6 +23,7 @@ struct TileOptions {
     // Variance of a large area's mean over what independent pixels would have: 1 for a box of one pixel; for a wider
     // filter with weights w over pixel offsets 1 / sum w^2, since neighbours share samples.
     double variance_inflation = 1;
+    double sure_hits = 100;            // see tile_test
     double region_significance = 0.01; // tiles whose own p is below belong to a region
 };
 
@@ -56,6 +58,15 @@ struct TileTest {
 };
 
 // For each tile t = (sum a - sum b) / sqrt(sum va + sum vb) with Welch's degrees of freedom over all its pixels.
+//
+// Light that comes by rare samples (a sliver of a lamp, a caustic) may miss a whole tile, which then states 0 +- 0 and
+// would be called certain. So for tiles (not for the whole image) an estimate's variance is taken to be at least
+//  - that of the other image's samples there in this one's number, where both sample counts are known (where they are
+//  the same
+//    this widens the error by sqrt 2 at the most);
+//  - where the estimate has fewer than `sure_hits` effective hits, (mean / error)^2: mean * quantum, the variance of
+//  rare hits as large
+//    as this image's own are (quantum = sum of its variances / sum of its means), with the larger of both means.
 TileTest tile_test(const Estimate &a, const Estimate &b, const TileOptions &options = {});
 
 } // namespace opal::stats

@@ -42,11 +42,13 @@ struct EvidenceFolder {
 TEST_CASE("Pictures that agree leave nothing, those that don't leave all", "[evidence]") {
     test::ScratchFolder scratch;
     EvidenceFolder evidence(scratch.path());
-    CHECK(test::same_picture("agree", noisy(1, 0), 100, noisy(2, 0), 100, 0.001).agrees);
+    CHECK(test::same_picture("agree", test::estimated(noisy(1, 0), 100), test::estimated(noisy(2, 0), 100), 0.001)
+              .agrees);
     CHECK_FALSE(fs::exists(scratch / "agree"));
 
     Image image = noisy(3, 0.2f), reference = noisy(4, 0);
-    test::Verdict verdict = test::same_picture("differ", image, 100, reference, 100, 0.001);
+    test::Verdict verdict =
+        test::same_picture("differ", test::estimated(image, 100), test::estimated(reference, 100), 0.001);
     CHECK_FALSE(verdict.agrees);
     CHECK(verdict.message.find((scratch / "differ").string()) != std::string::npos);
     CHECK(verdict.message.find("2 R tiles within x 16..23 y 0..15") != std::string::npos);
@@ -70,15 +72,16 @@ TEST_CASE("NaN and pictures without variance are no agreement", "[evidence]") {
     EvidenceFolder evidence(scratch.path());
     Image bad = noisy(5, 0), bare = noisy(6, 0), small = noisy(6, 0);
     bad.layers[1].values[3] = NAN;
-    CHECK_FALSE(test::same_picture("nan", bad, 100, noisy(6, 0), 100, 0.001).agrees);
+    CHECK_FALSE(test::same_picture("nan", test::estimated(bad, 100), test::estimated(noisy(6, 0), 100), 0.001).agrees);
     CHECK(fs::exists(scratch / "nan" / "z.png"));
     small.height = 8;
     for (Layer &layer : small.layers)
         layer.values.resize(8 * width);
-    CHECK_FALSE(test::same_picture("size", small, 100, noisy(6, 0), 100, 0.001).agrees);
+    CHECK_FALSE(
+        test::same_picture("size", test::estimated(small, 100), test::estimated(noisy(6, 0), 100), 0.001).agrees);
     CHECK(fs::exists(scratch / "size" / "reference.png"));
     bare.layers.resize(3);
-    CHECK_THROWS_AS(estimate_of(bare, 100), Error);
+    CHECK_THROWS_AS(estimate_of(bare, 100, 99), Error);
 }
 
 TEST_CASE("False colours", "[evidence]") {

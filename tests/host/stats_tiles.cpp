@@ -15,7 +15,7 @@ constexpr double level = 1e-3;
 struct Picture {
     std::vector<std::vector<float>> mean, variance;
     Estimate estimate() const {
-        Estimate e{width, height, {}, {}, spp - 1};
+        Estimate e{width, height, {}, {}, spp, spp - 1};
         e.mean.assign(mean.begin(), mean.end());
         e.variance.assign(variance.begin(), variance.end());
         return e;
@@ -114,6 +114,44 @@ TEST_CASE("a variance of 0 has a relative floor", "[stats_tiles]") {
     CHECK(t.rejected(level));
     CHECK(t.worst_tile.x == 56);
     CHECK(t.region.tiles == 6);
+}
+
+TEST_CASE("light by rare samples is no difference", "[stats_tiles]") {
+    // One sample in 5000 is 1, the others 0: 16 samples a pixel mostly miss a tile, 4096 do not.
+    auto rare = [](unsigned seed, int samples, double p) {
+        std::mt19937_64 rng(seed);
+        std::binomial_distribution<int> hits(samples, p);
+        Picture picture;
+        picture.mean.resize(1), picture.variance.resize(1);
+        for (int i = 0; i < width * height; ++i) {
+            double mean = double(hits(rng)) / samples;
+            picture.mean[0].push_back(float(mean));
+            picture.variance[0].push_back(float(mean * (1 - mean) / (samples - 1)));
+        }
+        return picture;
+    };
+    auto estimate = [](const Picture &p, double samples, bool counts_known = true) {
+        Estimate e = p.estimate();
+        e.samples = counts_known ? samples : 0, e.dof = samples - 1;
+        return e;
+    };
+    TileOptions naive;
+    naive.sure_hits = 0;
+    int rejected = 0, borrowed = 0, quantum = 0, unaided = 0;
+    for (unsigned seed = 0; seed < 60; ++seed) {
+        Picture few = rare(2 * seed, 16, 2e-4), many = rare(2 * seed + 1, 4096, 2e-4);
+        rejected += tile_test(estimate(few, 16), estimate(many, 4096)).rejected(0.05);
+        borrowed += tile_test(estimate(few, 16), estimate(many, 4096), naive).rejected(0.05);
+        quantum += tile_test(estimate(few, 16, false), estimate(many, 4096, false)).rejected(0.05);
+        unaided += tile_test(estimate(few, 16, false), estimate(many, 4096, false), naive).rejected(0.05);
+    }
+    CAPTURE(rejected, borrowed, quantum);
+    CHECK(binomial_test(rejected, 60, 0.05).p_value > level);
+    CHECK(binomial_test(borrowed, 60, 0.05).p_value > level);
+    CHECK(binomial_test(quantum, 60, 0.05).p_value > level);
+    CHECK(unaided == 60); // the negative control: what the rule is for
+    Picture dark = rare(1, 256, 2e-4), bright = rare(2, 4096, 4e-4);
+    CHECK(tile_test(estimate(dark, 256), estimate(bright, 4096)).rejected(level));
 }
 
 TEST_CASE("NaN, negative variances and images that don't fit are rejected", "[stats_tiles]") {

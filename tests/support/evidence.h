@@ -13,9 +13,16 @@ struct Verdict {
 
 // Welch's test per tile of two images with variance layers. On a rejection writes the evidence into
 // $OPAL_EVIDENCE/<name>, or evidence/<name> in the working directory. Use:
-//   Verdict v = same_picture("cbox_mis", image, spp - 1, reference, 47, level);
+//   Verdict v = same_picture("cbox_mis", estimated(image, spp), {reference, 6144, 47}, level);
 //   INFO(v.message); CHECK(v.agrees);
-Verdict same_picture(const std::string &name, const Image &image, double image_dof, const Image &reference,
-                     double reference_dof, double significance, const stats::TileOptions &options = {});
+struct Estimated {
+    const Image &image;
+    double samples; // a pixel
+    double dof;     // of its variances
+};
+inline Estimated estimated(const Image &image, double spp) { return {image, spp, spp - 1}; }
+
+Verdict same_picture(const std::string &name, const Estimated &image, const Estimated &reference, double significance,
+                     const stats::TileOptions &options = {});
 
 } // namespace opal::test
