@@ -1,5 +1,7 @@
 #include "base/table.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <numeric>
@@ -36,7 +38,7 @@ std::string joined(const std::vector<std::string> &names) {
 
 std::string nearest_name(std::string_view name, const std::vector<std::string> &known) {
     std::string nearest;
-    size_t least = name.size() / 2 + 1;
+    size_t least = std::max<size_t>(name.size() / 3, 1) + 1;
     for (const std::string &candidate : known) {
         size_t distance = edit_distance(name, candidate);
         if (distance < least && distance < candidate.size()) {
@@ -47,10 +49,11 @@ std::string nearest_name(std::string_view name, const std::vector<std::string> &
     return nearest;
 }
 
-std::string unknown_name(std::string_view what, std::string_view name, const std::vector<std::string> &known) {
+std::string unknown_name(std::string_view what, std::string_view name, const std::vector<std::string> &known,
+                         const std::string &of) {
     std::string nearest = nearest_name(name, known);
-    std::string hint = nearest.empty() ? "" : "did you mean '" + nearest + "'? ";
-    return "unknown " + std::string(what) + " '" + std::string(name) + "'; " + hint + "available: " + joined(known);
+    std::string hint = nearest.empty() ? "" : fmt::format("did you mean '{}'? ", nearest);
+    return fmt::format("unknown {} '{}'{}; {}available: {}", what, name, of, hint, joined(known));
 }
 
 } // namespace opal

@@ -15,8 +15,10 @@ std::string nearest_name(std::string_view name, const std::vector<std::string> &
 
 std::string joined(const std::vector<std::string> &names); // "a, b, c"; "none" for no names
 
-// The sentence for a name that is not there; `what` says its kind: "bsdf", "property".
-std::string unknown_name(std::string_view what, std::string_view name, const std::vector<std::string> &known);
+// The sentence for a name that is not there; `what` says its kind ("bsdf", "property"), `of` whose it is (" of
+// <mesh>").
+std::string unknown_name(std::string_view what, std::string_view name, const std::vector<std::string> &known,
+                         const std::string &of = "");
 
 template <class Rows> std::vector<std::string> names_of(const Rows &rows) {
     std::vector<std::string> names;

@@ -4,6 +4,8 @@
 #include "scene/options.h"
 #include "scene/parsers.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace opal {
@@ -17,8 +19,6 @@ void choose_filter(SceneDescription &scene) {
         return;
     filter.kind = scene.university_dialect ? FILTER_box : FILTER_gaussian;
     filter.radius = scene.university_dialect ? 0.5 : 2;
-    info(std::string("no <rfilter>: ") + (scene.university_dialect ? "box" : "gaussian") +
-         ", as scenes with integrator " + scene.integrator_type + " mean it");
 }
 
 bool has_light(const SceneDescription &scene) {
@@ -68,7 +68,11 @@ SceneDescription load_scene(const std::filesystem::path &file, const LoadOptions
         root.fail("this is a <test>, not a <scene>: run it with `opal test`");
     if (root.tag() != "scene")
         root.fail(unknown_name("root", root.tag(), {"scene", "test"}));
-    return parse_scene(root, {file.parent_path(), options.lenient});
+    SceneDescription scene = parse_scene(root, {file.parent_path(), options.lenient});
+    if (!scene.camera.filter.given)
+        info(fmt::format("no <rfilter>: {}, as scenes with integrator {} mean it",
+                         scene.university_dialect ? "box" : "gaussian", scene.integrator_type));
+    return scene;
 }
 
 } // namespace opal

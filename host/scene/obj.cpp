@@ -5,6 +5,8 @@
 #include "scene/values.h"
 #include "scene/xml.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -24,6 +26,8 @@ struct ObjFile {
     std::string name;
     std::vector<Vec3> positions, normals;
     size_t texture_count = 0;
+    unsigned largest_texture = 0; // index that a face names, and the face's line
+    int largest_texture_line = 0;
     std::vector<TriangleMesh::Corner> corners;
     std::vector<Face> faces;
     size_t dropped = 0; // faces of fewer than three corners, triangles without area
@@ -94,7 +98,7 @@ unsigned read_index(std::string_view word, size_t count_so_far, const char *what
 }
 
 // v, v/vt, v//vn or v/vt/vn.
-TriangleMesh::Corner read_corner(const ObjFile &obj, std::string_view word) {
+TriangleMesh::Corner read_corner(ObjFile &obj, std::string_view word, int line) {
     std::string_view parts[3];
     size_t count = 0;
     for (std::string_view rest = word; count < 3; ++count) {
@@ -107,7 +111,10 @@ TriangleMesh::Corner read_corner(const ObjFile &obj, std::string_view word) {
     if (count == 3)
         throw Error("'" + std::string(word) + "' has more than vertex/texture/normal");
     if (!parts[1].empty())
-        read_index(parts[1], obj.texture_count, "texture");
+        if (unsigned index = read_index(parts[1], obj.texture_count, "texture"); index >= obj.largest_texture) {
+            obj.largest_texture = index;
+            obj.largest_texture_line = line;
+        }
     return {read_index(parts[0], obj.positions.size(), "vertex"),
             parts[2].empty() ? none : read_index(parts[2], obj.normals.size(), "normal")};
 }
@@ -115,7 +122,7 @@ TriangleMesh::Corner read_corner(const ObjFile &obj, std::string_view word) {
 void read_face(ObjFile &obj, const Words &words, int line) {
     size_t first = obj.corners.size();
     for (size_t i = 1; i < words.size(); ++i)
-        obj.corners.push_back(read_corner(obj, words[i]));
+        obj.corners.push_back(read_corner(obj, words[i], line));
     obj.faces.push_back({first, words.size() - 1, line});
 }
 
@@ -144,17 +151,21 @@ ObjFile read_statements(const std::filesystem::path &file) {
     return obj;
 }
 
-void check_face(const ObjFile &obj, const Face &face) {
-    auto check = [&](unsigned index, size_t count, const char *what) {
-        if (index >= count)
-            obj.fail(face.line, std::string(what) + " index " + std::to_string(index + 1ull) +
-                                    " is out of range: the file has " + std::to_string(count));
-    };
-    for (size_t i = face.first; i < face.first + face.count; ++i) {
-        check(obj.corners[i].position, obj.positions.size(), "vertex");
-        if (obj.corners[i].normal != none)
-            check(obj.corners[i].normal, obj.normals.size(), "normal");
-    }
+void check_index(const ObjFile &obj, int line, const char *what, unsigned index, size_t count) {
+    if (index >= count)
+        obj.fail(line, fmt::format("{} index {} is out of range: the file has {}", what, index + 1ull, count));
+}
+
+// Texture coordinates are not kept: Opal has no textures.
+void check_indices(const ObjFile &obj) {
+    for (const Face &face : obj.faces)
+        for (size_t i = face.first; i < face.first + face.count; ++i) {
+            check_index(obj, face.line, "vertex", obj.corners[i].position, obj.positions.size());
+            if (obj.corners[i].normal != none)
+                check_index(obj, face.line, "normal", obj.corners[i].normal, obj.normals.size());
+        }
+    if (obj.largest_texture_line > 0)
+        check_index(obj, obj.largest_texture_line, "texture", obj.largest_texture, obj.texture_count);
 }
 
 // Normals of no length become `none` in the corners, as if they were missing.
@@ -232,8 +243,7 @@ std::vector<Vec3> compact(const std::vector<Vec3> &all, std::vector<std::array<T
 
 TriangleMesh read_obj(const std::filesystem::path &file, const Transform &to_world) {
     ObjFile obj = read_statements(file);
-    for (const Face &face : obj.faces)
-        check_face(obj, face);
+    check_indices(obj);
     to_world_space(obj, to_world);
     TriangleMesh mesh;
     mesh.triangles = make_triangles(obj);

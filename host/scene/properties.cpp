@@ -3,6 +3,8 @@
 #include "base/log.h"
 #include "scene/transforms.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 
@@ -151,8 +153,9 @@ void Properties::finish() const {
     for (const Property &property : properties_) {
         if (property.asked)
             continue;
-        std::string of = object_.attribute("type").empty() ? "" : " '" + object_.attribute("type") + "'";
-        std::string message = unknown_name("property of " + object_.tag() + of, property.name, known_properties_);
+        std::string type = object_.attribute("type");
+        std::string of = type.empty() ? " of <scene>" : fmt::format(" of {} '{}'", object_.tag(), type);
+        std::string message = unknown_name("property", property.name, known_properties_, of);
         if (!context_.lenient)
             property.node.fail(message);
         warn(property.node.place().text() + ": " + message);

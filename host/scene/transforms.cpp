@@ -75,9 +75,8 @@ const std::vector<Operation> operations = {{"translate", parse_translate},
 Transform parse_transform(const XmlNode &node) {
     Transform result;
     for (const XmlNode &child : node.children()) {
-        const Operation &operation = at_place(child, [&]() -> const Operation & {
-            return find_row(operations, "operation of a transform", child.tag());
-        });
+        const Operation &operation =
+            at_place(child, [&]() -> const Operation & { return find_row(operations, "operation", child.tag()); });
         result = operation.parse(child) * result;
         if (!child.children().empty())
             child.children().front().fail(fmt::format("<{}> holds nothing", child.tag()));

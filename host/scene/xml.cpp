@@ -61,7 +61,7 @@ void XmlNode::require_attributes(std::initializer_list<const char *> names) cons
     for (pugi::xml_attribute attribute : node_.attributes()) {
         std::string name = attribute.name();
         if (std::find(known.begin(), known.end(), name) == known.end())
-            fail(unknown_name(fmt::format("attribute of <{}>", tag()), name, known));
+            fail(unknown_name("attribute", name, known, fmt::format(" of <{}>", tag())));
         if (std::find(seen.begin(), seen.end(), name) != seen.end())
             fail(fmt::format("<{}> has the attribute '{}' twice", tag(), name));
         seen.push_back(name);

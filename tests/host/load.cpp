@@ -1,0 +1,463 @@
+#include "scene/load.h"
+#include "base/log.h"
+#include "scene/test_scene.h"
+#include "support/error_of.h"
+#include "support/scratch.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+using namespace opal;
+using opal::test::error_of;
+
+namespace {
+
+const std::string camera = "<camera type='perspective'/>";
+const std::string light =
+    "<mesh type='parallelogram'><point name='origin' value='0 0 0'/><vector name='u' value='1 0 0'/>"
+    "<vector name='v' value='0 2 0'/><emitter type='area'><color name='radiance' value='1 2 3'/>"
+    "</emitter></mesh>";
+
+struct LoadFixture {
+    test::ScratchFolder scratch;
+    std::string file() const { return (scratch / "a.xml").string(); }
+    // Loads a scene with `body` from line 2 on.
+    SceneDescription load(const std::string &body, const LoadOptions &options = {}) const {
+        return load_scene(scratch.write("a.xml", "<scene>\n" + body + "\n</scene>"), options);
+    }
+    SceneDescription load_integrator(const std::string &integrator) const { return load(integrator + camera + light); }
+    // The error after the file's name.
+    std::string error_in(const std::string &body) const {
+        return shortened(error_of([&] { load(body); }));
+    }
+    // Of a property (line 4) in an object `tag` of `type` (line 3), beside a camera unless it is one.
+    std::string property_error(const std::string &tag, const std::string &type, const std::string &property) const {
+        return error_in((tag == "camera" ? "" : camera) + "\n<" + tag + " type='" + type + "'>\n" + property + "</" +
+                        tag + ">");
+    }
+    std::string bsdf_error(const std::string &type, const std::string &property) const {
+        return error_in(camera + "\n<mesh type='parallelogram'><bsdf type='" + type + "'>\n" + property +
+                        "</bsdf></mesh>");
+    }
+    TestDescription load_test_text(const std::string &text) const { return load_test(scratch.write("a.xml", text)); }
+    std::string test_error(const std::string &text) const {
+        return shortened(error_of([&] { load_test_text(text); }));
+    }
+    std::string shortened(const std::string &error) const {
+        return error.starts_with(file()) ? error.substr(file().size()) : error;
+    }
+};
+
+std::filesystem::path shared() { return std::filesystem::path(OPAL_SOURCE_DIR) / ".." / "shared"; }
+
+} // namespace
+
+TEST_CASE_METHOD(LoadFixture, "defaults of everything are resolved", "[load]") {
+    SceneDescription scene = load(camera + light);
+    CHECK(scene.file == file());
+    CHECK(scene.camera.width == 1280);
+    CHECK(scene.camera.height == 720);
+    CHECK(scene.camera.fov == 30);
+    CHECK(scene.camera.near_clip == 1e-4);
+    CHECK(scene.camera.far_clip == 1e4);
+    CHECK(scene.spp == 1);
+    CHECK(scene.integrator_type == "path_mis");
+    CHECK(scene.strategy[AXIS_integrator] == CHOICE_integrator_path);
+    CHECK(scene.strategy[AXIS_lighting] == CHOICE_lighting_mis);
+    CHECK(scene.strategy[AXIS_rr] == CHOICE_rr_throughput_eta);
+    CHECK(scene.strategy.rr_depth == 3);
+    CHECK(scene.strategy.max_depth == no_limit);
+    REQUIRE(scene.meshes.size() == 1);
+    const Mesh &mesh = scene.meshes[0];
+    CHECK(mesh.place.text() == file() + ":2:29");
+    CHECK(mesh.bsdf.record.kind == BSDF_diffuse);
+    CHECK(mesh.bsdf.record.u.diffuse.albedo[1] == 0.5f);
+    CHECK(mesh.bsdf.record.u.diffuse.use_cosine == 0);
+    CHECK(mesh.radiance == Color{1, 2, 3});
+    CHECK(std::get<Parallelogram>(mesh.shape).v.y == 2);
+}
+
+TEST_CASE_METHOD(LoadFixture, "the integrators of both dialects become choices", "[load]") {
+    const int any = -1;
+    auto recursive = [](const std::string &properties) {
+        return "<integrator type='path_tracer_recursive'>" + properties + "</integrator>";
+    };
+    auto on = [](const std::string &name) { return "<boolean name='" + name + "' value='true'/>"; };
+    auto direct = [](const std::string &properties) {
+        return "<integrator type='direct_lighting'>" + properties + "</integrator>";
+    };
+    auto check = [&](const std::string &xml, int integrator, int lighting, int mis, int rr) {
+        INFO(xml);
+        const Strategy s = load_integrator(xml).strategy;
+        CHECK(s[AXIS_integrator] == integrator);
+        CHECK((lighting == any || s[AXIS_lighting] == lighting));
+        CHECK((mis == any || s[AXIS_mis] == mis));
+        CHECK((rr == any || s[AXIS_rr] == rr));
+    };
+    const int path = CHOICE_integrator_path, balance = CHOICE_mis_balance, eta = CHOICE_rr_throughput_eta;
+    const int bsdf = CHOICE_lighting_bsdf, emitter = CHOICE_lighting_emitter, mis = CHOICE_lighting_mis;
+    const int direct_lighting = CHOICE_integrator_direct_lighting, off = CHOICE_rr_off;
+    check("<integrator type='normals'/>", CHOICE_integrator_normals, any, any, any);
+    check("<integrator type='whitted'/>", CHOICE_integrator_whitted, emitter, any, any);
+    check("<integrator type='path_mats'/>", path, bsdf, balance, eta);
+    check("<integrator type='path_ems'/>", path, emitter, balance, eta);
+    check("<integrator type='path_mis'/>", path, mis, balance, eta);
+    check(direct(""), direct_lighting, bsdf, balance, any);
+    check(direct(on("surface_sampling")), direct_lighting, emitter, balance, any);
+    check(direct(on("mis_sampling")), direct_lighting, mis, CHOICE_mis_one_sample, any);
+    check(recursive(""), path, bsdf, balance, off);
+    check(recursive(on("rr")), path, bsdf, balance, eta);
+    check(recursive(on("nee")), path, emitter, balance, off);
+    check(recursive(on("mis")), path, mis, balance, off);
+    check(recursive(on("nee") + on("mis") + on("rr")), path, mis, balance, eta);
+    check(recursive(on("rr") + "<float name='rr_prob' value='0.7'/>"), path, bsdf, balance, CHOICE_rr_fixed);
+    check(recursive(on("rr") + on("rr_dynamic") + "<float name='rr_prob' value='0.7'/>"), path, bsdf, balance, eta);
+    check(recursive("<float name='rr_prob' value='0.7'/>"), path, bsdf, balance, off);
+}
+
+TEST_CASE_METHOD(LoadFixture, "integrators' own values", "[load]") {
+    CHECK(load_integrator("<integrator type='path_tracer_recursive'><float name='rr_prob' value='0.7'/></integrator>")
+              .strategy.rr_prob == 0.7);
+    CHECK(load_integrator("<integrator type='normals'><boolean name='signed' value='true'/></integrator>")
+              .normals_signed);
+    auto ao = [&](const std::string &property) {
+        return load_integrator("<integrator type='ao'>" + property + "</integrator>").strategy[AXIS_hemisphere];
+    };
+    CHECK(ao("") == CHOICE_hemisphere_cosine);
+    CHECK(ao("<boolean name='cosine_sampling' value='false'/>") == CHOICE_hemisphere_uniform);
+    SceneDescription simple = load_integrator("<integrator type='simple'><point name='position' value='1 2 3'/>"
+                                              "<color name='energy' value='4 5 6'/></integrator>");
+    CHECK(simple.simple_light.position.z == 3);
+    CHECK(simple.simple_light.energy == Color{4, 5, 6});
+    CHECK_THAT(error_in(camera + "<integrator type='simple'/>"), Catch::Contains("lacks its property 'position'"));
+}
+
+TEST_CASE_METHOD(LoadFixture, "every axis and number is a property of the integrator too", "[load]") {
+    const Strategy s =
+        load_integrator("<integrator type='path_tracer_recursive'><string name='lighting' value='mis'/><string "
+                        "name='mis' value='power'/>"
+                        "<string name='rr' value='throughput-eta'/><string name='hemisphere' value='cosine'/>"
+                        "<string name='emitter_choice' value='power'/><string name='triangle_choice' value='uniform'/>"
+                        "<string name='sampler' value='sobol'/><integer name='maxDepth' value='9'/><integer "
+                        "name='rrDepth' value='4'/>"
+                        "<string name='math' value='fast'/><integer name='lanes' value='8'/><boolean name='specialise' "
+                        "value='False'/>"
+                        "</integrator>")
+            .strategy;
+    CHECK(s[AXIS_lighting] == CHOICE_lighting_mis);
+    CHECK(s[AXIS_mis] == CHOICE_mis_power);
+    CHECK(s[AXIS_rr] == CHOICE_rr_throughput_eta);
+    CHECK(s[AXIS_hemisphere] == CHOICE_hemisphere_cosine);
+    CHECK(s[AXIS_emitter_choice] == CHOICE_emitter_choice_power);
+    CHECK(s[AXIS_triangle_choice] == CHOICE_triangle_choice_uniform);
+    CHECK(s[AXIS_sampler] == CHOICE_sampler_sobol);
+    CHECK(s.max_depth == 9);
+    CHECK(s.rr_depth == 4);
+    CHECK(s.math == MathMode::fast);
+    CHECK(s.lanes == 8);
+    CHECK_FALSE(s.specialise);
+    CHECK(load_integrator("<integrator type='path_mis'><integer name='maxDepth' value='-1'/></integrator>")
+              .strategy.max_depth == no_limit);
+    CHECK(property_error("integrator", "path_mis", "<string name='mis' value='powr'/>") ==
+          ":4:1: property 'mis': unknown mis 'powr'; did you mean 'power'? available: balance, power, one-sample");
+    CHECK(property_error("integrator", "path_mis", "<integer name='maxDepth' value='0'/>") ==
+          ":4:1: property 'maxDepth': max-depth ('none' for no limit) must be at least 1, not 0");
+    CHECK(property_error("integrator", "path_mis", "<boolean name='mis' value='true'/>") ==
+          ":4:1: property 'mis' is a <boolean> here, but must be a <string>");
+    CHECK_THAT(property_error("integrator", "path_tracer_recursive", "<float name='rr_prob' value='0'/>"),
+               Catch::StartsWith(":4:1: property 'rr_prob': rr-prob must be"));
+}
+
+TEST_CASE_METHOD(LoadFixture, "samplers by type", "[load]") {
+    SceneDescription scene =
+        load(camera + light + "<sampler type='stratified'><integer name='sampleCount' value='64'/></sampler>");
+    CHECK(scene.spp == 64);
+    CHECK(scene.strategy[AXIS_sampler] == CHOICE_sampler_stratified);
+    CHECK(property_error("sampler", "independent", "<integer name='sampleCount' value='0'/>") ==
+          ":4:1: property 'sampleCount': must be at least 1 sample per pixel");
+    CHECK(property_error("sampler", "halton", "") ==
+          ":3:1: unknown sampler type 'halton'; available: independent, stratified, sobol");
+}
+
+TEST_CASE_METHOD(LoadFixture, "the filter without <rfilter> is the dialect's", "[load]") {
+    Filter university = load_integrator("<integrator type='direct_lighting'/>").camera.filter;
+    CHECK(university.kind == FILTER_box);
+    CHECK(university.radius == 0.5);
+    CHECK_FALSE(university.given);
+    Filter upstream = load_integrator("<integrator type='path_mis'/>").camera.filter;
+    CHECK(upstream.kind == FILTER_gaussian);
+    CHECK(upstream.radius == 2);
+    CHECK(upstream.stddev == 0.5);
+}
+
+TEST_CASE_METHOD(LoadFixture, "filters by type", "[load]") {
+    auto filter = [&](const std::string &xml) {
+        return load("<camera type='perspective'>" + xml + "</camera>" + light).camera.filter;
+    };
+    CHECK(filter("<rfilter type='box'/>").given);
+    CHECK(filter("<rfilter type='box'/>").radius == 0.5);
+    CHECK(filter("<rfilter type='tent'/>").radius == 1);
+    Filter gaussian = filter("<rfilter type='gaussian'><float name='stddev' value='0.7'/></rfilter>");
+    CHECK(gaussian.kind == FILTER_gaussian);
+    CHECK(gaussian.radius == 2);
+    CHECK(gaussian.stddev == 0.7);
+    Filter mitchell = filter("<rfilter type='mitchell'><float name='B' value='0'/></rfilter>");
+    CHECK(mitchell.b == 0);
+    CHECK(mitchell.c == 1.0 / 3);
+    CHECK_THAT(error_in("<camera type='perspective'>\n<rfilter type='sinc'/></camera>"),
+               Catch::Equals(":3:1: unknown rfilter type 'sinc'; available: box, tent, gaussian, mitchell"));
+}
+
+TEST_CASE_METHOD(LoadFixture, "camera values that make no sense fail at their place", "[load]") {
+    CHECK(property_error("camera", "perspective", "<integer name='width' value='0'/>") ==
+          ":4:1: property 'width': must be at least 1 pixel");
+    CHECK_THAT(property_error("camera", "perspective", "<integer name='height' value='-5'/>"),
+               Catch::StartsWith(":4:1: "));
+    CHECK_THAT(property_error("camera", "perspective", "<float name='fov' value='180'/>"), Catch::StartsWith(":4:1: "));
+    CHECK_THAT(property_error("camera", "perspective", "<float name='fov' value='0'/>"), Catch::StartsWith(":4:1: "));
+    CHECK_THAT(property_error("camera", "perspective", "<float name='farClip' value='1e-5'/>"),
+               Catch::StartsWith(":4:1: "));
+    CHECK_THAT(property_error("camera", "perspective", "<float name='nearClip' value='-1'/>"),
+               Catch::StartsWith(":4:1: "));
+    CHECK(property_error("camera", "orthographic", "") ==
+          ":3:1: unknown camera type 'orthographic'; available: perspective");
+    CHECK(property_error("camera", "perspective", "<float name='fov' value='1e-6'/>").empty());
+}
+
+TEST_CASE_METHOD(LoadFixture, "BSDFs with their parameters", "[load]") {
+    auto bsdf = [&](const std::string &xml) {
+        std::string mesh = light;
+        return load(camera + mesh.insert(mesh.find("<emitter"), xml)).meshes.at(0).bsdf.record;
+    };
+    CHECK(bsdf("<bsdf type='mirror'/>").kind == BSDF_mirror);
+    BsdfRecord glass = bsdf("<bsdf type='dielectric'/>");
+    CHECK(glass.u.dielectric.int_ior == 1.5046f);
+    CHECK(glass.u.dielectric.ext_ior == 1.000277f);
+    BsdfRecord diffuse = bsdf(
+        "<bsdf type='diffuse'><color name='albedo' value='1 0.2 0'/><boolean name='use_cosine' value='true'/></bsdf>");
+    CHECK(diffuse.u.diffuse.albedo[1] == 0.2f);
+    CHECK(diffuse.u.diffuse.use_cosine == 1);
+    BsdfRecord rough = bsdf("<bsdf type='microfacet'><color name='kd' value='0.1 0.2 0.15'/><boolean name='use_cosine' "
+                            "value='true'/></bsdf>");
+    CHECK(rough.kind == BSDF_microfacet);
+    CHECK(rough.u.microfacet.alpha == 0.1f);
+    CHECK(rough.u.microfacet.ks == 0.8f);
+    CHECK(rough.u.microfacet.kd[2] == 0.15f);
+    BsdfRecord phong = bsdf("<bsdf type='phong'><float name='n' value='1e8'/></bsdf>");
+    CHECK(phong.u.phong.n == 1e8f);
+    CHECK(phong.u.phong.pd == 0.5f);
+    CHECK(phong.u.phong.ks[0] == 0.5f);
+}
+
+TEST_CASE_METHOD(LoadFixture, "BSDF values that make no sense fail at their place", "[load]") {
+    CHECK(bsdf_error("diffuse", "<color name='albedo' value='1 -1 1'/>") ==
+          ":4:1: property 'albedo': must not be negative");
+    CHECK_THAT(bsdf_error("microfacet", "<color name='kd' value='1.5 0 0'/>"),
+               Catch::StartsWith(":4:1: property 'kd': must not exceed 1"));
+    CHECK_THAT(bsdf_error("microfacet", "<float name='alpha' value='0'/>"), Catch::StartsWith(":4:1: "));
+    CHECK_THAT(bsdf_error("dielectric", "<float name='intIOR' value='0'/>"), Catch::StartsWith(":4:1: "));
+    CHECK_THAT(bsdf_error("phong", "<float name='pd' value='1.5'/>"), Catch::StartsWith(":4:1: "));
+    CHECK_THAT(bsdf_error("phong", "<float name='n' value='-1'/>"), Catch::StartsWith(":4:1: "));
+    CHECK(bsdf_error("difuse", "") == ":3:28: unknown bsdf type 'difuse'; did you mean 'diffuse'? available: diffuse, "
+                                      "mirror, dielectric, microfacet, phong");
+    CHECK(bsdf_error("area", "").starts_with(":3:28: unknown bsdf type 'area'; "));
+    CHECK(bsdf_error("mirror", "<float name='alpha' value='1'/>") ==
+          ":4:1: unknown property 'alpha' of bsdf 'mirror'; available: use_cosine");
+}
+
+TEST_CASE_METHOD(LoadFixture, "emitters stand where they belong", "[load]") {
+    SceneDescription scene = load(
+        camera + light +
+        "\n<emitter type='point'><point name='position' value='1 2 3'/><color name='power' value='4 5 6'/></emitter>");
+    REQUIRE(scene.point_lights.size() == 1);
+    CHECK(scene.point_lights[0].position.y == 2);
+    CHECK(scene.point_lights[0].power == Color{4, 5, 6});
+    CHECK(scene.point_lights[0].place.text() == file() + ":3:1");
+    CHECK(error_in(camera + "\n<emitter type='area'><color name='radiance' value='1 1 1'/></emitter>") ==
+          ":3:1: emitter 'area' must stand in a <mesh>, not in a <scene>");
+    CHECK_THAT(error_in(camera + "<mesh type='parallelogram'>\n<emitter type='point'/></mesh>"),
+               Catch::Equals(":3:1: emitter 'point' must stand in a <scene>, not in a <mesh>"));
+    CHECK(error_in(camera + "<mesh type='parallelogram'>\n<emitter type='area'/></mesh>") ==
+          ":3:1: <emitter> lacks its property 'radiance'");
+    CHECK_THAT(error_in(camera + "<mesh type='parallelogram'>\n<emitter type='sky'/></mesh>"),
+               Catch::StartsWith(":3:1: unknown emitter type 'sky'; available: area, parallelogram_emitter, point"));
+}
+
+TEST_CASE_METHOD(LoadFixture, "parallelograms take their transform, and need an area", "[load]") {
+    std::string mesh = light;
+    mesh.insert(mesh.find("<emitter"),
+                "<string name='name' value='lamp'/><transform name='toWorld'><scale value='-2 1 1'/>"
+                "<translate value='0 0 5'/></transform>");
+    SceneDescription scene = load(camera + mesh);
+    const Parallelogram &shape = std::get<Parallelogram>(scene.meshes[0].shape);
+    CHECK(scene.meshes[0].name == "lamp");
+    CHECK(shape.origin.z == 5);
+    CHECK(shape.u.x == -2);
+    CHECK(shape.u.z == 0);
+    CHECK_THAT(
+        error_in(camera +
+                 "\n<mesh type='parallelogram'><point name='origin' value='0 0 0'/><vector name='u' value='1 2 3'/>"
+                 "<vector name='v' value='2 4 6'/></mesh>"),
+        Catch::StartsWith(":3:1: the parallelogram has no area"));
+    CHECK_THAT(error_in(camera + "\n<mesh type='parallelogram'><point name='origin' value='0 0 0'/></mesh>"),
+               Catch::Equals(":3:1: <mesh> lacks its property 'u'"));
+}
+
+TEST_CASE_METHOD(LoadFixture, "OBJ files are found beside the scene, then in the current folder, with either slash",
+                 "[load]") {
+    scratch.write("meshes/a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    auto mesh = [](const std::string &name) {
+        return camera + light + "\n<mesh type='obj'>\n<string name='filename' value='" + name + "'/></mesh>";
+    };
+    CHECK(std::get<TriangleMesh>(load(mesh("meshes/a.obj")).meshes[1].shape).triangles.size() == 1);
+    CHECK(load(mesh("meshes\\a.obj")).meshes[1].name == "meshes\\a.obj");
+    std::filesystem::path here = std::filesystem::current_path();
+    scratch.write("elsewhere/b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    std::filesystem::current_path(scratch / "elsewhere");
+    size_t count = load(mesh("b.obj")).meshes.size();
+    std::filesystem::current_path(here);
+    CHECK(count == 2);
+    CHECK(error_in(mesh("none.obj")) == ":4:1: property 'filename': no such file: " + (scratch / "none.obj").string() +
+                                            ", nor none.obj in the current folder");
+    CHECK(error_in(camera + "\n<mesh type='obj'/>") == ":3:1: <mesh> lacks its property 'filename'");
+}
+
+TEST_CASE_METHOD(LoadFixture, "an error in an OBJ file names it and the mesh", "[load]") {
+    std::string obj = scratch.write("bad.obj", "v 0 0 0\nf 1 2 3\n").string();
+    CHECK(error_in(camera + "\n <mesh type='obj'><string name='filename' value='bad.obj'/></mesh>") ==
+          obj + ":2: vertex index 2 is out of range: the file has 1 (the mesh at " + file() + ":3:2)");
+}
+
+TEST_CASE_METHOD(LoadFixture, "an unknown property fails, or warns if lenient", "[load]") {
+    std::string body = "<camera type='perspective'>\n  <float name='fow' value='30'/></camera>" + light;
+    CHECK_THAT(error_in(body),
+               Catch::StartsWith(":3:3: unknown property 'fow' of camera 'perspective'; did you mean 'fov'? "));
+    CHECK(load(body, {.lenient = true}).camera.fov == 30);
+    CHECK_THAT(warnings().back(), Catch::StartsWith(file() + ":3:3: unknown property 'fow'"));
+    CHECK_THAT(error_in("<float name='fov' value='30'/>" + camera),
+               Catch::StartsWith(":2:1: unknown property 'fov' of <scene>"));
+}
+
+TEST_CASE_METHOD(LoadFixture, "what a scene must and may hold", "[load]") {
+    CHECK(error_in(light) == ":1:1: <scene> lacks its <camera>");
+    CHECK_THAT(error_in(camera + "\n" + camera), Catch::StartsWith(":3:1: a second <camera> in <scene>"));
+    CHECK_THAT(error_in(camera + "\n<bsdf type='mirror'/>"),
+               Catch::StartsWith(
+                   ":3:1: no <bsdf> may stand in <scene>; available: camera, integrator, sampler, mesh, emitter"));
+    CHECK_THAT(error_in(camera + "\n<cone type='x'/>"), Catch::StartsWith(":3:1: unknown tag 'cone'"));
+    CHECK_THAT(
+        error_in(camera + "\n<integrator type='photonmapper'/>"),
+        Catch::StartsWith(
+            ":3:1: unknown integrator type 'photonmapper'; available: normals, ao, simple, whitted, direct_lighting, "
+            "path_tracer_recursive, path_mats, path_ems, path_mis"));
+    CHECK_THAT(error_in(camera + "\n<mesh type='ply'/>"),
+               Catch::Equals(":3:1: unknown mesh type 'ply'; available: obj, parallelogram"));
+    auto root_error = [&](const std::string &text) {
+        return shortened(error_of([&] { load_scene(scratch.write("a.xml", text)); }));
+    };
+    CHECK(root_error("<scene type='x'/>") == ":1:1: unknown attribute 'type' of <scene>; available: none");
+    CHECK(root_error("<mesh type='obj'/>") == ":1:1: unknown root 'mesh'; available: scene, test");
+    CHECK_THAT(root_error("<test type='ttest'/>"),
+               Catch::StartsWith(":1:1: this is a <test>") && Catch::Contains("opal test"));
+    CHECK_THAT(error_of([&] { load_scene(scratch / "none.xml"); }),
+               Catch::StartsWith((scratch / "none.xml").string() + ": cannot read"));
+}
+
+TEST_CASE_METHOD(LoadFixture, "scenes that render black are warned of", "[load]") {
+    load(camera);
+    CHECK(warnings().back() == file() + ":1:1: the scene has no <mesh>; it renders black");
+    std::string dark = light;
+    dark.replace(dark.find("<emitter"), dark.find("</mesh>") - dark.find("<emitter"), "");
+    load(camera + dark);
+    CHECK(warnings().back() == file() + ":1:1: the scene has no <emitter>; it renders black");
+    size_t before = warnings().size();
+    load(camera + dark + "<integrator type='ao'/>");
+    CHECK(warnings().size() == before);
+}
+
+TEST_CASE_METHOD(LoadFixture, "tests hold scenes with a reference each", "[load]") {
+    TestDescription test = load_test_text("<test type='ttest'><string name='references' value='0.5, 1.5'/>\n<scene>" +
+                                          camera + light + "</scene><scene>" + camera + light + "</scene></test>");
+    CHECK(test.type == "ttest");
+    CHECK(test.references == std::vector<double>{0.5, 1.5});
+    CHECK(test.scenes.size() == 2);
+    CHECK(test.sample_count == 100000);
+    CHECK(test.significance_level == 0.01);
+    CHECK(test.scenes[1].meshes[0].radiance == Color{1, 2, 3});
+}
+
+TEST_CASE_METHOD(LoadFixture, "tests hold BSDFs with a reference each angle", "[load]") {
+    TestDescription ttest = load_test_text("<test type='ttest'><string name='angles' value=' 0, 45'/><string "
+                                           "name='references' value='1 2'/><bsdf type='mirror'/></test>");
+    CHECK(ttest.angles == std::vector<double>{0, 45});
+    CHECK(ttest.bsdfs.at(0).record.kind == BSDF_mirror);
+    TestDescription chi2 = load_test_text(
+        "<test type='chi2test'><integer name='testCount' value='7'/><bsdf type='diffuse'/><bsdf type='phong'/></test>");
+    CHECK(chi2.bsdfs.size() == 2);
+    CHECK(chi2.test_count == 7);
+    CHECK(chi2.sample_count == -1);
+    CHECK(chi2.resolution == 10);
+    CHECK(chi2.min_expected_frequency == 5);
+}
+
+TEST_CASE_METHOD(LoadFixture, "tests that make no sense fail at their place", "[load]") {
+    CHECK(test_error("<test type='ttest'>\n<string name='references' value='1, 2'/><scene>" + camera + light +
+                     "</scene></test>") == ":2:1: property 'references': 2 numbers for 1 means");
+    CHECK(test_error("<test type='ttest'>\n<string name='references' value='1, x'/></test>") ==
+          ":2:1: property 'references': 'x' is not a number");
+    CHECK_THAT(test_error("<test type='chi2test'><scene>" + camera + light + "</scene></test>"),
+               Catch::StartsWith(":1:1: a chi2test holds BSDFs"));
+    CHECK(test_error("<test type='chi2test'/>") == ":1:1: the test holds nothing to test");
+    CHECK(test_error("<test type='ztest'/>") ==
+          ":1:1: unknown test type 'ztest'; did you mean 'ttest'? available: ttest, chi2test");
+    CHECK_THAT(test_error("<scene/>"), Catch::StartsWith(":1:1: this is a <scene>"));
+    CHECK_THAT(
+        test_error("<test type='chi2test'>\n<float name='significanceLevel' value='1'/><bsdf type='mirror'/></test>"),
+        Catch::StartsWith(":2:1: "));
+}
+
+TEST_CASE("the course's scenes load unchanged", "[load]") {
+    if (!std::filesystem::exists(shared() / "scenes")) {
+        WARN("no ../shared/scenes: skipped");
+        return;
+    }
+    int count = 0;
+    for (const auto &entry : std::filesystem::recursive_directory_iterator(shared() / "scenes")) {
+        if (entry.path().extension() != ".xml")
+            continue;
+        INFO(entry.path());
+        size_t before = warnings().size();
+        SceneDescription scene = load_scene(entry.path());
+        CHECK_NOTHROW(check_strategy(scene));
+        CHECK(warnings().size() == before);
+        CHECK(scene.meshes.size() >= 6);
+        CHECK(scene.camera.filter.kind == FILTER_box);
+        CHECK(std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh &mesh) { return mesh.radiance; }));
+        ++count;
+    }
+    CHECK(count == 18);
+}
+
+TEST_CASE("one of the course's scenes, in detail", "[load]") {
+    std::filesystem::path file = shared() / "scenes/importance_diffuse/cbox_pt_nee.xml";
+    if (!std::filesystem::exists(file)) {
+        WARN("no ../shared/scenes: skipped");
+        return;
+    }
+    SceneDescription scene = load_scene(file);
+    CHECK(scene.spp == 64);
+    CHECK(scene.camera.width == 500);
+    CHECK(scene.camera.near_clip == 0.10000000149011612);
+    CHECK(scene.strategy[AXIS_lighting] == CHOICE_lighting_emitter);
+    CHECK(scene.strategy[AXIS_rr] == CHOICE_rr_throughput_eta);
+    size_t triangles = 0;
+    for (const Mesh &mesh : scene.meshes)
+        if (const auto *shape = std::get_if<TriangleMesh>(&mesh.shape))
+            triangles += shape->triangles.size();
+    CHECK(triangles == 34);
+    // scale -1 -1 1, then a quarter turn about x, then the translation
+    Vec3 ahead = scene.camera.to_world.vector({0, 0, 1}), origin = scene.camera.to_world.point({0, 0, 0});
+    CHECK(ahead.y == Approx(-1));
+    CHECK(origin.y == Approx(84));
+}
