@@ -53,7 +53,7 @@ Picture render(unsigned seed) {
 TEST_CASE("two estimates of one picture agree as often as stated", "[stats_tiles]") {
     int rejected = 0, doubled = 0;
     std::vector<double> whole;
-    for (unsigned seed = 0; seed < 200; ++seed) {
+    for (unsigned seed = 0; seed < 100; ++seed) {
         Picture a = render(2 * seed), b = render(2 * seed + 1);
         TileTest t = tile_test(a.estimate(), b.estimate());
         rejected += t.rejected(0.05);
@@ -64,8 +64,8 @@ TEST_CASE("two estimates of one picture agree as often as stated", "[stats_tiles
                     v /= 2;
         doubled += tile_test(a.estimate(), b.estimate()).rejected(0.05);
     }
-    CHECK_FALSE(binomial_test(rejected, 200, 0.05).rejected(level));
-    CHECK(binomial_test(doubled, 200, 0.05).rejected(level));
+    CHECK_FALSE(binomial_test(rejected, 100, 0.05).rejected(level));
+    CHECK(binomial_test(doubled, 100, 0.05).rejected(level));
     CHECK_FALSE(ks_uniform_test(whole).rejected(level));
 }
 
