@@ -1,4 +1,5 @@
 // Picks the command. The only place that prints an error and exits.
+#include "base/command_line.h"
 #include "base/error.h"
 #include "commands/commands.h"
 
@@ -83,6 +84,7 @@ int run(int argc, char **argv) {
 } // namespace opal
 
 int main(int argc, char **argv) {
+    opal::set_command_line(argc, argv);
     try {
         return opal::run(argc, argv);
     } catch (const std::bad_alloc &) {

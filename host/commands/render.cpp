@@ -1,4 +1,5 @@
 // opal render: a scene to an EXR and a PNG.
+#include "base/command_line.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "base/signals.h"
@@ -78,6 +79,8 @@ int run(const Options &o, const CLI::App &app) {
     const std::filesystem::path exr = o.out.empty() ? scene.file.stem().replace_extension(".exr") : std::filesystem::path(o.out);
     const std::filesystem::path png = std::filesystem::path(exr).replace_extension(".png");
     check_writable(exr);
+    if (!o.no_png)
+        check_writable(png);
     if (!o.json.empty())
         check_writable(o.json);
     seconds.load = load.seconds();
@@ -112,8 +115,7 @@ int run(const Options &o, const CLI::App &app) {
 
     const Film film = renderer.film();
     Image image = image_of(film, variance);
-    std::string command_line;
-    add_metadata(image, report_json(scene, pick.info, lanes, o.seed, film, seconds), command_line);
+    add_metadata(image, report_json(scene, pick.info, lanes, o.seed, film, seconds), command_line());
     Stopwatch write;
     write_exr(image, exr);
     if (!o.no_png)

@@ -1,4 +1,5 @@
 // The command line: what is printed, and one clear message with exit code 1 for what makes no sense.
+#include "base/command_line.h"
 #include "support/scratch.h"
 
 #include <catch2/catch.hpp>
@@ -71,4 +72,10 @@ TEST_CASE("inspect tells what a scene holds and why each feature is in or out", 
                                 Catch::Contains("#define OPAL_AXIS_lighting -1\n") && Catch::Contains("#line 1 \"cl/kernels/render.cl\""));
     check_refused("inspect " + (folder / "scene.xml").string() + " --mis balanced", "available: balance, power, one-sample");
     check_refused("inspect " + (folder / "scene.xml").string() + " --cl --cl-dir " + folder.path().string(), "holds no .cl file");
+}
+
+TEST_CASE("The command line is kept as a shell would take it", "[commands]") {
+    const char *const words[] = {"opal", "render", "a b.xml", "--json=x", "it's", ""};
+    opal::set_command_line(6, words);
+    CHECK(opal::command_line() == "opal render 'a b.xml' --json=x 'it'\\''s' ''");
 }

@@ -1,0 +1,33 @@
+#include "base/command_line.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace opal {
+
+namespace {
+
+std::string kept;
+
+bool is_plain(unsigned char c) { return std::isalnum(c) || std::string("_-./=,:+@%").find(char(c)) != std::string::npos; }
+
+} // namespace
+
+std::string shell_word(const std::string &word) {
+    if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain))
+        return word;
+    std::string quoted = "'";
+    for (const char c : word)
+        quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
+}
+
+void set_command_line(int argc, const char *const *argv) {
+    kept.clear();
+    for (int i = 0; i < argc; ++i)
+        kept += (i ? " " : "") + shell_word(argv[i]);
+}
+
+const std::string &command_line() { return kept; }
+
+} // namespace opal
