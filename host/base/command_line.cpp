@@ -18,14 +18,21 @@ std::string shell_word(const std::string &word) {
         return word;
     std::string quoted = "'";
     for (const char c : word)
-        quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return quoted + "'";
+        if (c == '\'')
+            quoted += "'\\''";
+        else
+            quoted += c;
+    quoted += '\'';
+    return quoted;
 }
 
 void set_command_line(int argc, const char *const *argv) {
     kept.clear();
-    for (int i = 0; i < argc; ++i)
-        kept += (i ? " " : "") + shell_word(argv[i]);
+    for (int i = 0; i < argc; ++i) {
+        if (i)
+            kept += ' ';
+        kept += shell_word(argv[i]);
+    }
 }
 
 const std::string &command_line() { return kept; }
