@@ -55,9 +55,9 @@ LaneRay load_ray(const LaneRays *rays, int lane) {
     return r;
 }
 
-// The children whose boxes the ray meets, one bit each, and where it enters them. (plane - o) / d loses nothing that
+// The children whose boxes the ray meets, a byte each, and where it enters them. (plane - o) / d loses nothing that
 // matters, and the far side is widened by its error bound, so that no box misses a triangle inside it (Ize 2013).
-uint intersect_children(global const BvhNode *node, const LaneRay *ray, real8 *entry) {
+ulong intersect_children(global const BvhNode *node, const LaneRay *ray, real8 *entry) {
     global const float *lo = node->lo[0], *hi = node->hi[0];
     int x = ray->inverse[0] < 0, y = ray->inverse[1] < 0, z = ray->inverse[2] < 0;
     real8 near_x = (load8(x ? hi : lo) - ray->o[0]) * ray->inverse[0];
@@ -68,7 +68,7 @@ uint intersect_children(global const BvhNode *node, const LaneRay *ray, real8 *e
     real8 far_z = (load8((z ? lo : hi) + 16) - ray->o[2]) * ray->inverse[2];
     *entry = real8_max(real8_max(near_x, near_y), real8_max(near_z, (real8)(ray->tmin)));
     real8 leave = real8_min(real8_min(far_x, far_y), far_z) * (1 + 8 * EPSILON);
-    return bits_of(*entry <= real8_min(leave, (real8)(ray->tmax)));
+    return bytes_of(*entry <= real8_min(leave, (real8)(ray->tmax)));
 }
 
 // Nearest hit of one ray; slot = OPAL_NONE where there is none.
@@ -81,17 +81,20 @@ void walk_closest(const Scene *scene, LaneRay ray, real1 *t_out, real1 *u_out, r
     for (;;) {
         if (child & OPAL_LEAF) {
             uint block = child & ~OPAL_LEAF;
-            real8 t, u, v;
-            uint hits = intersect_block(scene->blocks + block, &ray, &t, &u, &v);
-            if (hits) {
-                real1 ts[8], us[8], vs[8];
-                vstore8(t, 0, ts); vstore8(u, 0, us); vstore8(v, 0, vs);
-                while (hits) {
-                    uint i = lowest_bit(hits);
-                    hits &= hits - 1;
-                    if (ts[i] < ray.tmax) {
-                        ray.tmax = ts[i];
-                        *u_out = us[i]; *v_out = vs[i];
+            BlockTest test = intersect_block(scene->blocks + block, &ray);
+            if (test.hits) {
+                real1 t[8], reciprocal[8], b[8], c[8];
+                real8 inverse = 1 / test.determinant;
+                vstore8(test.distance * inverse, 0, t);
+                vstore8(inverse, 0, reciprocal);
+                vstore8(test.b, 0, b);
+                vstore8(test.c, 0, c);
+                for (; test.hits; test.hits &= test.hits - 1) {
+                    uint i = first_of(test.hits);
+                    if (t[i] < ray.tmax) {
+                        ray.tmax = t[i];
+                        *u_out = b[i] * reciprocal[i];
+                        *v_out = c[i] * reciprocal[i];
                         *slot_out = block * 8 + i;
                     }
                 }
@@ -100,13 +103,12 @@ void walk_closest(const Scene *scene, LaneRay ray, real1 *t_out, real1 *u_out, r
             // Push the children that are met, the nearest last.
             global const BvhNode *node = scene->nodes + child;
             real8 entry;
-            uint met = intersect_children(node, &ray, &entry);
+            ulong met = intersect_children(node, &ray, &entry);
             real1 es[8];
             vstore8(entry, 0, es);
             int bottom = top;
-            while (met) {
-                uint i = lowest_bit(met);
-                met &= met - 1;
+            for (; met; met &= met - 1) {
+                uint i = first_of(met);
                 int place = top++;
                 while (place > bottom && entries[place - 1] < es[i]) {
                     entries[place] = entries[place - 1];
@@ -134,16 +136,11 @@ int walk_any(const Scene *scene, LaneRay ray) {
     uint child = scene->settings->root;
     for (;;) {
         if (child & OPAL_LEAF) {
-            real8 t, u, v;
-            if (intersect_block(scene->blocks + (child & ~OPAL_LEAF), &ray, &t, &u, &v)) return 1;
+            if (intersect_block(scene->blocks + (child & ~OPAL_LEAF), &ray).hits) return 1;
         } else {
             global const BvhNode *node = scene->nodes + child;
             real8 entry;
-            uint met = intersect_children(node, &ray, &entry);
-            while (met) {
-                stack[top++] = node->child[lowest_bit(met)];
-                met &= met - 1;
-            }
+            for (ulong met = intersect_children(node, &ray, &entry); met; met &= met - 1) stack[top++] = node->child[first_of(met)];
         }
         if (top == 0) return 0;
         child = stack[--top];
@@ -163,9 +160,9 @@ void view_vertices(const Scene *scene, Ray ray, TinyView *view) {
     real ox = v3_dot(px, ray.o), oy = v3_dot(py, ray.o), oz = v3_dot(pz, ray.o);
     for (uint i = 0; i < scene->settings->tiny_vertex_count; i++) {
         real1 x = scene->tiny_vertices[3 * i], y = scene->tiny_vertices[3 * i + 1], z = scene->tiny_vertices[3 * i + 2];
-        view->x[i] = mad(px.x, (real)(x), mad(px.y, (real)(y), mad(px.z, (real)(z), -ox)));
-        view->y[i] = mad(py.x, (real)(x), mad(py.y, (real)(y), mad(py.z, (real)(z), -oy)));
-        view->z[i] = mad(pz.x, (real)(x), mad(pz.y, (real)(y), mad(pz.z, (real)(z), -oz)));
+        view->x[i] = mul_add(px.x, (real)(x), mul_add(px.y, (real)(y), mul_add(px.z, (real)(z), -ox)));
+        view->y[i] = mul_add(py.x, (real)(x), mul_add(py.y, (real)(y), mul_add(py.z, (real)(z), -oy)));
+        view->z[i] = mul_add(pz.x, (real)(x), mul_add(pz.y, (real)(y), mul_add(pz.z, (real)(z), -oz)));
     }
 }
 
@@ -181,7 +178,7 @@ TinyTest tiny_test(const TinyView *view, const uint *corner) {
     real determinant = a + b + c;
     // One sign for both: then ratios compare by products, without a division a triangle.
     real sign = copysign((real)(1), determinant);
-    TinyTest test = {b, c, fabs(determinant), sign * mad(a, view->z[i], mad(b, view->z[j], c * view->z[k])), inside};
+    TinyTest test = {b, c, fabs(determinant), sign * mul_add(a, view->z[i], mul_add(b, view->z[j], c * view->z[k])), inside};
     return test;
 }
 

@@ -12,8 +12,8 @@ real fresnel_dielectric(real cosine, real sin2, real near, real far) {
     real sin2_far = sin2 / square(eta);
     real far_cosine = safe_sqrt(1 - sin2_far);
     real step = (far - near) * (far + near) / square(near); // eta^2 - 1
-    real r_s = -step / square(mad(eta, far_cosine, cosine));
-    real r_p = step * (square(cosine) - sin2_far) / square(mad(eta, cosine, far_cosine));
+    real r_s = -step / square(mul_add(eta, far_cosine, cosine));
+    real r_p = step * (square(cosine) - sin2_far) / square(mul_add(eta, cosine, far_cosine));
     real reflectance = R(0.5) * (r_s * r_s + r_p * r_p);
     return (sin2_far >= 1) ? (real)(1) : real_min(reflectance, (real)(1));
 }

@@ -73,6 +73,9 @@ typedef WIDE(uint) uints;
 #define to_real(i) CAT(convert_, WIDE(REAL_NAME))(i)
 #define to_uints(x) CAT(convert_, WIDE(uint))(x)
 
+// a b + c, as one instruction where the device has one: PoCL's mad() never is
+#define mul_add(a, b, c) ((a) * (b) + (c))
+
 #define NO_LANES ((mask)(0))
 #define ALL_LANES (!NO_LANES)
 
@@ -88,8 +91,8 @@ v3 v3_sub(v3 a, v3 b) { return v3_of(a.x - b.x, a.y - b.y, a.z - b.z); }
 v3 v3_mul(v3 a, v3 b) { return v3_of(a.x * b.x, a.y * b.y, a.z * b.z); }
 v3 v3_scale(v3 a, real s) { return v3_of(a.x * s, a.y * s, a.z * s); }
 v3 v3_neg(v3 a) { return v3_of(-a.x, -a.y, -a.z); }
-v3 v3_mad(v3 a, real s, v3 b) { return v3_of(mad(a.x, s, b.x), mad(a.y, s, b.y), mad(a.z, s, b.z)); } // a s + b
-real v3_dot(v3 a, v3 b) { return mad(a.x, b.x, mad(a.y, b.y, a.z * b.z)); }
+v3 v3_mad(v3 a, real s, v3 b) { return v3_of(mul_add(a.x, s, b.x), mul_add(a.y, s, b.y), mul_add(a.z, s, b.z)); } // a s + b
+real v3_dot(v3 a, v3 b) { return mul_add(a.x, b.x, mul_add(a.y, b.y, a.z * b.z)); }
 v3 v3_cross(v3 a, v3 b) { return v3_of(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x); }
 v3 v3_normalize(v3 a) { return v3_scale(a, rsqrt(v3_dot(a, a))); }
 v3 v3_abs(v3 a) { return v3_of(fabs(a.x), fabs(a.y), fabs(a.z)); }
@@ -101,19 +104,9 @@ v3 v3_pick(mask m, v3 yes, v3 no) { return v3_of(m ? yes.x : no.x, m ? yes.y : n
 real8 real8_min(real8 a, real8 b) { return a < b ? a : b; }
 real8 real8_max(real8 a, real8 b) { return a > b ? a : b; }
 
-// Bit i of the result is lane i of a comparison of real8s.
-uint bits_of(mask8 truth) {
-#if OPAL_DOUBLE
-    int8 m = convert_int8(truth);
-#else
-    int8 m = truth;
-#endif
-    m &= (int8)(1, 2, 4, 8, 16, 32, 64, 128);
-    int4 a = m.lo | m.hi;
-    int2 b = a.lo | a.hi;
-    return (uint)(b.lo | b.hi);
-}
-uint lowest_bit(uint bits) { return 31 - clz(bits & (0 - bits)); } // CL 1.2 has no ctz
+// The true elements of a comparison of real8s, a byte each, lowest first: a set to walk through by first_of.
+ulong bytes_of(mask8 truth) { return as_ulong(convert_char8(truth)) & 0x0101010101010101ul; }
+uint first_of(ulong bytes) { return (uint)(popcount(~bytes & (bytes - 1)) >> 3); } // CL 1.2 has no ctz
 
 // Eight floats of a record in memory, as reals.
 real8 load8(global const float *p) {

@@ -18,17 +18,17 @@ v2 cos_sin_2pi(real u) {
     real x2 = x * x;
     real s = R(2.7557319223985893e-06), c = R(-2.7557319223985888e-07);
     if (OPAL_DOUBLE) {
-        s = mad(x2, mad(x2, mad(x2, mad(x2, (real)(R(2.8114572543455206e-15)), (real)(R(-7.6471637318198164e-13))),
+        s = mul_add(x2, mul_add(x2, mul_add(x2, mul_add(x2, (real)(R(2.8114572543455206e-15)), (real)(R(-7.6471637318198164e-13))),
                                 (real)(R(1.6059043836821613e-10))), (real)(R(-2.5052108385441720e-08))), s);
-        c = mad(x2, mad(x2, mad(x2, (real)(R(4.7794773323873853e-14)), (real)(R(-1.1470745597729725e-11))),
+        c = mul_add(x2, mul_add(x2, mul_add(x2, (real)(R(4.7794773323873853e-14)), (real)(R(-1.1470745597729725e-11))),
                         (real)(R(2.0876756987868099e-09))), c);
     }
-    s = mad(x2, mad(x2, mad(x2, s, (real)(R(-1.9841269841269841e-04))), (real)(R(8.3333333333333333e-03))),
+    s = mul_add(x2, mul_add(x2, mul_add(x2, s, (real)(R(-1.9841269841269841e-04))), (real)(R(8.3333333333333333e-03))),
             (real)(R(-1.6666666666666667e-01)));
-    s = mad(x * x2, s, x);
-    c = mad(x2, mad(x2, mad(x2, c, (real)(R(2.4801587301587302e-05))), (real)(R(-1.3888888888888889e-03))),
+    s = mul_add(x * x2, s, x);
+    c = mul_add(x2, mul_add(x2, mul_add(x2, c, (real)(R(2.4801587301587302e-05))), (real)(R(-1.3888888888888889e-03))),
             (real)(R(4.1666666666666667e-02)));
-    c = mad(x2 * x2, c, mad(x2, (real)(R(-0.5)), (real)(1)));
+    c = mul_add(x2 * x2, c, mul_add(x2, (real)(R(-0.5)), (real)(1)));
     // Quarter turns: odd ones swap, 1 and 2 negate the cosine, 2 and 3 the sine.
     real turn = quarter - 4 * floor(R(0.25) * quarter);
     mask odd = turn == 1 | turn == 3;
@@ -49,7 +49,7 @@ v3 to_local(Frame f, v3 v) { return v3_of(v3_dot(v, f.s), v3_dot(v, f.t), v3_dot
 v3 to_world(Frame f, v3 v) { return v3_mad(f.s, v.x, v3_mad(f.t, v.y, v3_scale(f.n, v.z))); }
 
 real v3_largest(v3 a) { return real_max(a.x, real_max(a.y, a.z)); }
-real sin2_theta(v3 w) { return mad(w.x, w.x, w.y * w.y); } // not 1 - cos^2, which loses all digits near the pole
+real sin2_theta(v3 w) { return mul_add(w.x, w.x, w.y * w.y); } // not 1 - cos^2, which loses all digits near the pole
 v3 reflect_z(v3 w) { return v3_of(-w.x, -w.y, w.z); }
 
 // Luminance of linear RGB (ITU-R BT.709).

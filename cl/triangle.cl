@@ -28,22 +28,31 @@ typedef struct {
     real1 tmin, tmax;
 } LaneRay;
 
-// The block's triangles that the ray hits, one bit a place, with their distances and barycentric weights of corners 1, 2.
-uint intersect_block(global const TriangleBlock *block, const LaneRay *ray, real8 *t, real8 *u, real8 *v) {
+// What a ray and the triangles of a block make of each other: signed sums with t = distance / determinant, and the
+// barycentric weights of corners 1 and 2, b / determinant and c / determinant. Kept apart, as most need no division.
+typedef struct {
+    real8 distance, determinant, b, c;
+    ulong hits; // bytes_of those that are hit between tmin and tmax
+} BlockTest;
+
+BlockTest intersect_block(global const TriangleBlock *block, const LaneRay *ray) {
     global const float *x = block->vertex[0][0] + 8 * ray->kx;
     global const float *y = block->vertex[0][0] + 8 * ray->ky;
     global const float *z = block->vertex[0][0] + 8 * ray->kz;
     real1 ox = ray->o[ray->kx], oy = ray->o[ray->ky], oz = ray->o[ray->kz];
     real8 az = load8(z) - oz, bz = load8(z + 24) - oz, cz = load8(z + 48) - oz;
-    real8 ax = mad(-ray->shear_x, az, load8(x) - ox), ay = mad(-ray->shear_y, az, load8(y) - oy);
-    real8 bx = mad(-ray->shear_x, bz, load8(x + 24) - ox), by = mad(-ray->shear_y, bz, load8(y + 24) - oy);
-    real8 cx = mad(-ray->shear_x, cz, load8(x + 48) - ox), cy = mad(-ray->shear_y, cz, load8(y + 48) - oy);
+    real8 ax = mul_add(-ray->shear_x, az, load8(x) - ox), ay = mul_add(-ray->shear_y, az, load8(y) - oy);
+    real8 bx = mul_add(-ray->shear_x, bz, load8(x + 24) - ox), by = mul_add(-ray->shear_y, bz, load8(y + 24) - oy);
+    real8 cx = mul_add(-ray->shear_x, cz, load8(x + 48) - ox), cy = mul_add(-ray->shear_y, cz, load8(y + 48) - oy);
     real8 a = edge(cx, cy, bx, by), b = edge(ax, ay, cx, cy), c = edge(bx, by, ax, ay);
-    real8 determinant = a + b + c;
-    real8 reciprocal = 1 / determinant;
-    *t = ray->scale_z * mad(a, az, mad(b, bz, c * cz)) * reciprocal;
-    *u = b * reciprocal;
-    *v = c * reciprocal;
     mask8 inside = real8_min(a, real8_min(b, c)) >= 0 | real8_max(a, real8_max(b, c)) <= 0;
-    return bits_of(inside & (determinant != 0) & (*t > ray->tmin) & (*t < ray->tmax));
+
+    BlockTest test;
+    real8 sum = a + b + c;
+    test.determinant = fabs(sum);
+    test.distance = copysign((real8)(ray->scale_z), sum * ray->scale_z) * mul_add(a, az, mul_add(b, bz, c * cz));
+    test.b = fabs(b);
+    test.c = fabs(c);
+    test.hits = bytes_of(inside & (test.distance > ray->tmin * test.determinant) & (test.distance < ray->tmax * test.determinant));
+    return test;
 }

@@ -12,7 +12,7 @@ v2 square_to_uniform_disk(v2 u) {
     real r = sqrt(u.x);
     return v2_of(r * cs.x, r * cs.y);
 }
-real square_to_uniform_disk_pdf(v2 p) { return mad(p.x, p.x, p.y * p.y) <= 1 ? (real)(INV_PI) : (real)(0); }
+real square_to_uniform_disk_pdf(v2 p) { return mul_add(p.x, p.x, p.y * p.y) <= 1 ? (real)(INV_PI) : (real)(0); }
 
 // A direction from its height z and azimuth 2 pi v; sine = sqrt(1 - z^2), given because 1 - z^2 loses digits near z = 1.
 v3 direction_of(real z, real sine, real v) {
