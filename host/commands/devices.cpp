@@ -50,7 +50,7 @@ RunCommand setup_devices(CLI::App &app) {
     auto options = std::make_shared<DevicesOptions>();
     app.add_flag("--json", options->json, "Print JSON");
     app.add_option("--device", options->device, "What `render` would take: an index, cpu, gpu, or part of a name");
-    app.add_option("--time-limit", options->time_limit, "Seconds that a driver has to answer")->check(CLI::PositiveNumber);
+    app.add_option("--time-limit", options->time_limit, "Seconds that a driver has to answer")->check(CLI::Range(0.001, 3600.0));
     return [options] { return run_devices(*options); };
 }
 

@@ -78,6 +78,8 @@ int run(const Options &o, const CLI::App &app) {
     apply_size(scene, o, app);
     const std::filesystem::path exr = o.out.empty() ? scene.file.stem().replace_extension(".exr") : std::filesystem::path(o.out);
     const std::filesystem::path png = std::filesystem::path(exr).replace_extension(".png");
+    if (png == exr)
+        throw Error(fmt::format("--output {}: names the EXR file; the PNG goes beside it", exr.string()));
     check_writable(exr);
     if (!o.no_png)
         check_writable(png);
@@ -141,7 +143,7 @@ RunCommand setup_render(CLI::App &app) {
     add_device_option(app, o->device);
     app.add_option("-o,--output", o->out, "EXR file; the PNG goes beside it (default: the scene's name, in the current folder)");
     app.add_flag("--no-png", o->no_png, "Write no PNG");
-    app.add_option("--spp", o->spp, "Samples per pixel (default: the scene's sampleCount)")->check(CLI::PositiveNumber);
+    app.add_option("--spp", o->spp, "Samples per pixel (default: the scene's sampleCount)")->check(CLI::Range(1u, 0xffffffffu));
     app.add_option("--width", o->width, "Pixels (default: the scene's; one of both keeps its aspect)")->check(CLI::Range(1, 65535));
     app.add_option("--height", o->height, "Pixels (default: the scene's)")->check(CLI::Range(1, 65535));
     app.add_option("--seed", o->seed, "Of the random numbers; the same seed gives the same image")->capture_default_str();

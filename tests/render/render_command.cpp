@@ -1,0 +1,113 @@
+// `opal render` as its users meet it: files, statistics, refusals, Ctrl-C.
+#include "image/image.h"
+#include "support/scratch.h"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <csignal>
+#include <thread>
+#include <unistd.h>
+
+using namespace opal;
+using namespace opal::test;
+
+namespace {
+
+// A camera that looks at a light of radiance (1, 2, 3) filling the view: the image is that colour, whatever the strategy.
+const char *const scene_text = R"(<scene>
+  <integrator type="path_mis"/>
+  <sampler type="independent"><integer name="sampleCount" value="4"/></sampler>
+  <camera type="perspective"><integer name="width" value="24"/><integer name="height" value="12"/></camera>
+  <mesh type="parallelogram">
+    <point name="origin" value="5 -5 3"/><vector name="u" value="-10 0 0"/><vector name="v" value="0 10 0"/>
+    <bsdf type="diffuse"><color name="albedo" value="0 0 0"/></bsdf>
+    <emitter type="area"><color name="radiance" value="1 2 3"/></emitter>
+  </mesh>
+</scene>
+)";
+
+struct Place {
+    ScratchFolder folder;
+    std::string scene = folder.write("plain.xml", scene_text).string();
+    std::string render(const std::string &arguments) const {
+        return "cd " + folder.path().string() + " && " + OPAL_BINARY + " " + scene + " " + arguments;
+    }
+    size_t files() const {
+        const std::filesystem::directory_iterator begin(folder.path());
+        return static_cast<size_t>(std::distance(begin, std::filesystem::directory_iterator()));
+    }
+};
+
+void check_refused(const Place &place, const std::string &arguments, const std::string &reason) {
+    const Outcome outcome = run_shell(place.render(arguments));
+    INFO(arguments << "\n" << outcome.err);
+    CHECK(outcome.exit_code == 1);
+    CHECK_THAT(outcome.err, Catch::Contains("error: ") && Catch::Contains(reason));
+    CHECK(place.files() == 1); // the scene
+}
+
+} // namespace
+
+TEST_CASE("A render leaves EXR and PNG in the current folder, named after the scene", "[render_command]") {
+    const Place place;
+    const Outcome outcome = run_shell(place.render("--quiet --json stats.json --layers variance"));
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK(outcome.err.empty());
+    const Image image = read_exr(place.folder / "plain.exr");
+    CHECK(image.width == 24);
+    CHECK(image.height == 12);
+    CHECK(image.get("G").values.front() == Approx(2).epsilon(1e-6));
+    CHECK(image.get("variance.B").values.front() == Approx(0).margin(1e-9));
+    CHECK(std::filesystem::exists(place.folder / "plain.png"));
+    const auto stats = nlohmann::json::parse(read_text(place.folder / "stats.json"));
+    for (const char *key : {"scene", "device", "driver", "lanes", "strategy", "width", "height", "spp", "seed", "mean_rgb", "mean_luminance",
+                            "stderr_luminance", "invalid_samples", "samples_per_second", "seconds"})
+        CHECK(stats.contains(key));
+    for (const char *key : {"load", "bvh", "compile", "render", "write"})
+        CHECK(stats["seconds"].contains(key));
+    CHECK(stats["mean_rgb"][2].get<double>() == Approx(3).epsilon(1e-6));
+    CHECK(stats["spp"] == 4);
+    CHECK(stats["invalid_samples"] == 0);
+}
+
+TEST_CASE("Size, samples and output are the command line's where given", "[render_command]") {
+    const Place place;
+    REQUIRE(run_shell(place.render("-o out.exr --no-png --width 8 --spp 1 --lanes 1")).exit_code == 0);
+    CHECK(read_exr(place.folder / "out.exr").height == 4); // the scene's aspect
+    CHECK(place.files() == 2);
+}
+
+TEST_CASE("What cannot be rendered or written is refused, and nothing is left behind", "[render_command]") {
+    const Place place;
+    check_refused(place, "--spp 0", "--spp");
+    check_refused(place, "--width 0", "--width");
+    check_refused(place, "--device 99", "no OpenCL device \"99\"; available: 0 (");
+    check_refused(place, "-o none/out.exr", "there is no folder none");
+    check_refused(place, "-o out.png", "names the EXR file");
+    check_refused(place, "--no-png -o /dev/full", "No space left on device");
+    check_refused(place, "--width 65535 --height 65535", "no room for the film and its samples: ");
+    check_refused(place, "--lanes 3", "unknown lanes '3'; available: auto, 1, 4, 8, 16");
+    check_refused(place, "--lighting bsdf --mis one-sample", "makes no sense");
+}
+
+TEST_CASE("Ctrl-C writes what there is and exits with a code of its own", "[render_command]") {
+    const Place place;
+    const std::string started = place.folder / "started";
+    // The shell tells its process id, then becomes opal.
+    const std::string command = "echo $$ >" + started + ".tmp && mv " + started + ".tmp " + started + " && exec " + OPAL_BINARY + " " +
+                                place.scene + " --spp 1000000000 -o " + (place.folder / "out.exr").string();
+    Outcome outcome;
+    std::thread render([&] { outcome = run_shell("sh -c '" + command + "'"); });
+    while (!std::filesystem::exists(started))
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    const pid_t process = std::stoi(read_text(started));
+    // Before rendering has begun an interrupt ends the process at once.
+    std::this_thread::sleep_for(std::chrono::seconds(5));
+    kill(process, SIGINT);
+    render.join();
+    CHECK(outcome.exit_code == 130);
+    CHECK_THAT(outcome.err, Catch::Contains("warning: interrupted: the image holds "));
+    CHECK(read_exr(place.folder / "out.exr").get("R").values.front() == Approx(1).epsilon(1e-4));
+}
