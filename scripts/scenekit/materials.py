@@ -125,11 +125,11 @@ def meshes():
             "sphere_1280": (icosphere(3), "Unit sphere, 1280 triangles, smooth vn"),
             "sphere_5120": (icosphere(4), "Unit sphere, 5120 triangles, smooth vn"),
             "torus": (torus(1, 0.28, 40, 20), "Torus about y, radii 1 and 0.28, 1600 triangles"),
-            "knot": (torus_knot(3, 4, 1, 0.4, 0.13, 160, 12), "(3, 4) torus knot, 3840 triangles"),
+            "knot": (torus_knot(3, 4, 1, 0.4, 0.13, 120, 10), "(3, 4) torus knot, 2400 triangles"),
             "vase": (vase(), "Vase, 2560 triangles"),
             "glass_ring": (band(0.62, 0.75, 0.45, 64), "Solid ring of rectangular section, 512 triangles"),
             "height_carpet": (height_field(1, 1, 40, 40, carpet), "Carpet, 3200 triangles"),
-            "height_curtain": (height_field(1, 1, 24, 72, curtain), "Curtain, 3456 triangles"),
+            "height_curtain": (height_field(1, 1, 20, 60, curtain), "Curtain, 2400 triangles"),
             "checker_dark": (checker(0), "Half of the squares of a checkered floor"),
             "checker_light": (checker(1), "The other half of the squares of a checkered floor")}
 

@@ -15,11 +15,11 @@ def triple(v):
 
 
 def obj_text(surface, comment):
-    short = lambda v: " ".join(number(round(x, 5)) for x in v)
+    short = lambda v, digits: " ".join(number(round(x, digits)) for x in v)
     corner = lambda c: str(c[0] + 1) if c[1] is None else f"{c[0] + 1}//{c[1] + 1}"
     lines = [f"# {comment}", f"# {LICENCE}"]
-    lines += ["v " + short(p) for p in surface.positions]
-    lines += ["vn " + short(n) for n in surface.normals]
+    lines += ["v " + short(p, 5) for p in surface.positions]
+    lines += ["vn " + short(n, 4) for n in surface.normals]
     lines += ["f " + " ".join(corner(c) for c in face) for face in surface.faces]
     return "\n".join(lines) + "\n"
 
