@@ -39,6 +39,7 @@ void parse_path_tracer_recursive(Properties &properties, SceneDescription &scene
     bool rr = properties.boolean_if("rr").value_or(false);
     bool fixed = properties.number("rr_prob").has_value();
     bool dynamic = properties.boolean("rr_dynamic").value_or(!fixed); // the course's exporter writes it
+    properties.ignore("iterative"); // how some solutions loop
     Strategy &strategy = scene.strategy;
     strategy[AXIS_lighting] = mis ? CHOICE_lighting_mis : nee ? CHOICE_lighting_emitter : CHOICE_lighting_bsdf;
     strategy[AXIS_rr] = !rr ? CHOICE_rr_off : fixed && !dynamic ? CHOICE_rr_fixed : CHOICE_rr_throughput_eta;
