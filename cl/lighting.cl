@@ -91,6 +91,10 @@ mask scatter(const Scene *scene, Path *path, Surface s, mask live) {
     return live & (v3_largest(path->throughput) > 0);
 }
 
+// Survival stays below 1: total reflection can hold a path in glass for ever. No lower, so that a furnace of albedo a keeps
+// finite variance, which needs a^2 < survival.
+#define ROULETTE_MOST R(0.9999)
+
 // Ends paths at random and makes up for them in those that go on. It looks at the pair that scatter drew its lobe from.
 mask roulette(const Scene *scene, Path *path, mask live, real u) {
     if (CHOSEN(scene, rr, off)) return live;
@@ -98,7 +102,11 @@ mask roulette(const Scene *scene, Path *path, mask live, real u) {
     if (!CHOSEN(scene, rr, fixed)) {
         survival = v3_largest(path->throughput);
         if (CHOSEN(scene, rr, throughput_eta)) survival = survival * square(path->eta);
+<<<<<<< Updated upstream
         survival = real_min(survival, (real)(R(0.99))); // below 1: a path caught in glass or between mirrors ends too
+=======
+        survival = real_min(survival, (real)(ROULETTE_MOST));
+>>>>>>> Stashed changes
     }
     mask plays = live & to_mask(path->depth > scene->settings->rr_depth);
     path->throughput = v3_scale(path->throughput, plays ? 1 / survival : (real)(1));
