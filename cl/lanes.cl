@@ -79,14 +79,6 @@ typedef WIDE(uint) uints;
 #define NO_LANES ((mask)(0))
 #define ALL_LANES (!NO_LANES)
 
-// A call passes LANES numbers through memory, so every function is inlined; GPUs' compilers do that unasked.
-#if defined(__clang__) && __clang_major__ >= 7
-#pragma clang attribute push(__attribute__((always_inline)), apply_to = function)
-#define END_OF_FUNCTIONS _Pragma("clang attribute pop")
-#else
-#define END_OF_FUNCTIONS
-#endif
-
 typedef struct { real x, y; } v2;
 typedef struct { real x, y, z; } v3;
 

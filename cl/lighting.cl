@@ -102,11 +102,7 @@ mask roulette(const Scene *scene, Path *path, mask live, real u) {
     if (!CHOSEN(scene, rr, fixed)) {
         survival = v3_largest(path->throughput);
         if (CHOSEN(scene, rr, throughput_eta)) survival = survival * square(path->eta);
-<<<<<<< Updated upstream
-        survival = real_min(survival, (real)(R(0.99))); // below 1: a path caught in glass or between mirrors ends too
-=======
         survival = real_min(survival, (real)(ROULETTE_MOST));
->>>>>>> Stashed changes
     }
     mask plays = live & to_mask(path->depth > scene->settings->rr_depth);
     path->throughput = v3_scale(path->throughput, plays ? 1 / survival : (real)(1));
