@@ -13,6 +13,15 @@ std::string build_flags(const BuildOptions &options) {
     return std::string("-cl-std=CL1.2 -Werror") + (options.math == MathMode::fast ? " -cl-fast-relaxed-math" : "");
 }
 
+// A call that passes lanes passes them through memory, so every function is inlined: 10 to 15 % of the time of a render on
+// PoCL. GPUs' compilers do so unasked.
+constexpr const char *inline_all = "#if defined(__clang__) && __clang_major__ >= 7\n"
+                                   "#pragma clang attribute push(__attribute__((always_inline)), apply_to = function)\n"
+                                   "#endif\n";
+constexpr const char *inline_end = "\n#if defined(__clang__) && __clang_major__ >= 7\n"
+                                   "#pragma clang attribute pop\n"
+                                   "#endif\n";
+
 std::string log_of(const cl::Program &program, const cl::Device &device) {
     try {
         return program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
@@ -31,7 +40,7 @@ std::string program_text(const Features &features, const BuildOptions &options, 
 #define OPAL_AXIS_DEFINE(axis, help) text += fmt::format("#define OPAL_AXIS_" #axis " {}\n", features.axes[AXIS_##axis]);
     OPAL_AXES(OPAL_AXIS_DEFINE)
 #undef OPAL_AXIS_DEFINE
-    return text + sources.expand(options.kernels);
+    return text + inline_all + sources.expand(options.kernels) + inline_end;
 }
 
 cl::Program build_program(const Device &device, const std::string &text, const BuildOptions &options, double *seconds) {
