@@ -48,6 +48,10 @@ void add_override(CLI::App &app, SceneOptions &options, const std::string &name,
 
 void add_scene_options(CLI::App &app, SceneOptions &options) {
     app.add_option("SCENE.xml", options.file, "The scene, in Nori's format")->required()->type_name("");
+    add_strategy_options(app, options);
+}
+
+void add_strategy_options(CLI::App &app, SceneOptions &options) {
     add_override(app, options, "integrator", "NAME", integrator_help());
     for (const Option &option : opal::options()) {
         const auto axis = std::find_if(axes().begin(), axes().end(), [&](const Axis &a) { return a.name == option.name; });

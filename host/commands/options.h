@@ -15,7 +15,9 @@ struct SceneOptions {
     std::string cl_dir; // empty: the embedded kernels
 };
 
-// SCENE.xml, --integrator, a flag for each strategy option, --lenient, --cl-dir.
+// --integrator, a flag for each strategy option, --lenient, --cl-dir.
+void add_strategy_options(CLI::App &app, SceneOptions &options);
+// The same and SCENE.xml.
 void add_scene_options(CLI::App &app, SceneOptions &options);
 void add_device_option(CLI::App &app, std::string &device); // --device, for pick_device
 

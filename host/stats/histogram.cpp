@@ -81,10 +81,12 @@ Integral total(std::span<const Integral> cells) {
 }
 
 DensityTest density_test(const Histogram &histogram, const Density &density, bool may_fail,
-                         std::vector<double> splits_u, std::vector<double> splits_v, const ChiSquareOptions &options) {
+                         std::vector<double> splits_u, std::vector<double> splits_v, const ChiSquareOptions &options,
+                         double relative_error) {
     DensityTest test;
     double n = histogram.n();
     QuadratureOptions quadrature = expectation_options(n);
+    quadrature.relative = relative_error;
     quadrature.splits_x = std::move(splits_u);
     quadrature.splits_y = std::move(splits_v);
     std::vector<Integral> cells = integrate_density(histogram.grid, density, quadrature);

@@ -43,9 +43,10 @@ struct DensityTest {
 
 // Chi-square of the histogram against the density. Points outside are rejected at once. `may_fail` says that draws
 // without a sample are right, with the probability 1 - mass that the density leaves; else such a draw counts as one
-// outside. Also rejected: an integral that did not converge, since what it says cannot be held against anything.
+// outside. relative_error: that quadrature shall reach in a cell. Also rejected: an integral that did not converge,
+// since what it says cannot be held against anything.
 DensityTest density_test(const Histogram &histogram, const Density &density, bool may_fail = false,
                          std::vector<double> splits_u = {}, std::vector<double> splits_v = {},
-                         const ChiSquareOptions &options = {});
+                         const ChiSquareOptions &options = {}, double relative_error = 1e-5);
 
 } // namespace opal::stats

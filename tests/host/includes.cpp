@@ -40,7 +40,8 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"flatten", {"base", "cl", "scene"}},
     {"device", {"base", "cl", "flatten"}},
     {"render", {"base", "cl", "scene", "flatten", "device", "image", "stats"}},
-    {"commands", {"base", "cl", "scene", "flatten", "device", "image", "stats", "render"}},
+    {"trust", {"base", "cl", "scene", "flatten", "device", "image", "stats", "render"}},
+    {"commands", {"base", "cl", "scene", "flatten", "device", "image", "stats", "render", "trust"}},
 };
 const std::set<std::string> without_opencl = {"base", "image", "stats", "scene", "flatten"};
 

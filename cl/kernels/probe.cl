@@ -1,0 +1,151 @@
+// probe: the functions that rendering uses, one by one, on random numbers, points and rays of the host's choice, so that what
+// is tested is what renders (host/trust).
+//
+// A work-item carries LANES samples, from index first + item * LANES on. Inputs and outputs are planes of `stride` floats, a
+// multiple of 16: value k of sample i is at [k * stride + i]. Integers are in them by their bits.
+#include "lanes.cl"
+#include "math.cl"
+#include "rng.cl"
+#include "warp.cl"
+#include "fresnel.cl"
+#include "scene.cl"
+#include "triangle.cl"
+#include "bvh.cl"
+#include "surface.cl"
+#include "bsdf.cl"
+#include "emitter.cl"
+#include "kernels/probe_list.h"
+
+real get(global const float *planes, uint plane, uint stride, uint base) {
+    real1 lanes[LANES];
+    for (uint lane = 0; lane < LANES; lane++) lanes[lane] = planes[plane * stride + base + lane];
+    return LOAD(real, lanes);
+}
+v2 get_v2(global const float *planes, uint plane, uint stride, uint base) {
+    return v2_of(get(planes, plane, stride, base), get(planes, plane + 1, stride, base));
+}
+v3 get_v3(global const float *planes, uint plane, uint stride, uint base) {
+    return v3_of(get(planes, plane, stride, base), get(planes, plane + 1, stride, base), get(planes, plane + 2, stride, base));
+}
+void put(global float *planes, uint plane, uint stride, uint base, real value) {
+    real1 lanes[LANES];
+    STORE(value, lanes);
+    for (uint lane = 0; lane < LANES; lane++) planes[plane * stride + base + lane] = (float)lanes[lane];
+}
+void put_v3(global float *planes, uint plane, uint stride, uint base, v3 value) {
+    put(planes, plane, stride, base, value.x);
+    put(planes, plane + 1, stride, base, value.y);
+    put(planes, plane + 2, stride, base, value.z);
+}
+void put_uints(global float *planes, uint plane, uint stride, uint base, uints value) {
+    uint lanes[LANES];
+    STORE(value, lanes);
+    for (uint lane = 0; lane < LANES; lane++) planes[plane * stride + base + lane] = as_float(lanes[lane]);
+}
+uints lane_indices(uint base) {
+    uint lanes[LANES];
+    for (uint lane = 0; lane < LANES; lane++) lanes[lane] = base + lane;
+    return LOAD(uints, lanes);
+}
+
+// Drivers compile a kernel for each launch's shape, so that all launches have one: work-items past the end return.
+#define BASE_OR_RETURN \
+    uint base = first + (uint)get_global_id(0) * LANES; \
+    if (base >= stride) return
+
+// The pairs of dimensions first_dimension ... of sample i * sample_step of pixel i * pixel_step, by the settings' sampler.
+kernel void numbers(SCENE_PARAMETERS, uint pixel_step, uint sample_step, uint first_dimension, global float *out, uint first, uint stride) {
+    BASE_OR_RETURN;
+    Scene scene = SCENE_OF_PARAMETERS;
+    uints i = lane_indices(base);
+    Sampler sampler = sampler_start(i * pixel_step, i * sample_step, settings->seed);
+    for (uint pair = 0; pair < OPAL_PROBE_PAIRS; pair++) {
+        v2 u = draw(&scene, sampler, (uints)(first_dimension + pair));
+        put(out, 2 * pair, stride, base, u.x);
+        put(out, 2 * pair + 1, stride, base, u.y);
+    }
+}
+
+kernel void warp_sample(int which, float parameter, global const float *given, global float *out, uint first, uint stride) {
+    BASE_OR_RETURN;
+    v2 u = get_v2(given, 0, stride, base);
+    v3 p = v3_all((real)(0));
+#define SAMPLE_PLANE(name, domain) \
+    if (which == WARP_##name) { \
+        v2 q = square_to_##name(u); \
+        p = v3_of(q.x, q.y, (real)(0)); \
+    }
+#define SAMPLE_DIRECTION(name, domain) if (which == WARP_##name) p = square_to_##name(u);
+#define SAMPLE_LOBE(name, domain, meaning, otherwise) if (which == WARP_##name) p = square_to_##name(u, (real)(parameter));
+    OPAL_WARPS(SAMPLE_PLANE, SAMPLE_DIRECTION, SAMPLE_LOBE)
+    put_v3(out, WARP_X, stride, base, p);
+}
+
+kernel void warp_pdf(int which, float parameter, global const float *points, global float *out, uint first, uint stride) {
+    BASE_OR_RETURN;
+    v3 p = get_v3(points, WARP_X, stride, base);
+    real pdf = 0;
+#define PDF_PLANE(name, domain) if (which == WARP_##name) pdf = square_to_##name##_pdf(v2_of(p.x, p.y));
+#define PDF_DIRECTION(name, domain) if (which == WARP_##name) pdf = square_to_##name##_pdf(p);
+#define PDF_LOBE(name, domain, meaning, otherwise) if (which == WARP_##name) pdf = square_to_##name##_pdf(p, (real)(parameter));
+    OPAL_WARPS(PDF_PLANE, PDF_DIRECTION, PDF_LOBE)
+    put(out, 0, stride, base, pdf);
+}
+
+kernel void bsdf_draw(SCENE_PARAMETERS, uint id, float wi_x, float wi_y, float wi_z, global const float *given, global float *out,
+                      uint first, uint stride) {
+    BASE_OR_RETURN;
+    Scene scene = SCENE_OF_PARAMETERS;
+    v3 wi = v3_of((real)(wi_x), (real)(wi_y), (real)(wi_z));
+    BsdfSample s = bsdf_sample(&scene, (uints)(id), wi, get_v2(given, 0, stride, base), get(given, 2, stride, base), ALL_LANES);
+    put_v3(out, BSDF_WO_X, stride, base, s.wo);
+    put_v3(out, BSDF_WEIGHT_R, stride, base, s.weight);
+    put(out, BSDF_PDF, stride, base, bsdf_pdf(&scene, (uints)(id), wi, s.wo, ALL_LANES));
+    put(out, BSDF_ETA, stride, base, s.eta);
+    put(out, BSDF_DISCRETE, stride, base, s.discrete ? (real)(1) : (real)(0));
+}
+
+kernel void bsdf_value(SCENE_PARAMETERS, uint id, float wi_x, float wi_y, float wi_z, global const float *points, global float *out,
+                       uint first, uint stride) {
+    BASE_OR_RETURN;
+    Scene scene = SCENE_OF_PARAMETERS;
+    v3 wi = v3_of((real)(wi_x), (real)(wi_y), (real)(wi_z));
+    real pdf;
+    v3 f = bsdf_eval(&scene, (uints)(id), wi, get_v3(points, WARP_X, stride, base), ALL_LANES, &pdf);
+    put_v3(out, EVAL_R, stride, base, f);
+    put(out, EVAL_PDF, stride, base, pdf);
+}
+
+// A point on an emitter, chosen too, with the joint density over area.
+kernel void light_draw(SCENE_PARAMETERS, global const float *given, global float *out, uint first, uint stride) {
+    BASE_OR_RETURN;
+    Scene scene = SCENE_OF_PARAMETERS;
+    uints id = emitter_choose(&scene, get_v2(given, 0, stride, base));
+    EmitterSample s = emitter_sample(&scene, id, get_v2(given, 2, stride, base), get_v2(given, 4, stride, base), ALL_LANES);
+    put_v3(out, LIGHT_X, stride, base, s.p);
+    put_v3(out, LIGHT_FACING_X, stride, base, s.facing);
+    put(out, LIGHT_DENSITY, stride, base, s.density * emitter_probability(&scene, id));
+    put_uints(out, LIGHT_ID, stride, base, id);
+}
+
+// Closest and any hit of rays, and with which density over area light sampling finds the point that was hit.
+kernel void trace(SCENE_PARAMETERS, global const float *rays, global float *out, uint first, uint stride) {
+    BASE_OR_RETURN;
+    Scene scene = SCENE_OF_PARAMETERS;
+    Ray ray = {get_v3(rays, RAY_O_X, stride, base), get_v3(rays, RAY_D_X, stride, base), get(rays, RAY_TMIN, stride, base),
+               get(rays, RAY_TMAX, stride, base)};
+    Hit hit = closest_hit(&scene, ray, ALL_LANES);
+    mask found = to_mask(hit.slot != OPAL_NONE);
+    Surface s = surface_at(&scene, ray, hit, found);
+    mask shining = found & to_mask(s.emitter != OPAL_NONE);
+    real density = 0;
+    if (EMITTER_KINDS > 0 && ANY(shining))
+        density = shining ? emitter_area_pdf(&scene, uints_pick(shining, s.emitter, (uints)(0)), s.area) : density;
+    put(out, HIT_T, stride, base, hit.t);
+    put(out, HIT_U, stride, base, hit.u);
+    put(out, HIT_V, stride, base, hit.v);
+    put_uints(out, HIT_SLOT, stride, base, hit.slot);
+    put(out, HIT_ANY, stride, base, any_hit(&scene, ray, ALL_LANES) ? (real)(1) : (real)(0));
+    put_uints(out, HIT_EMITTER, stride, base, uints_pick(found, s.emitter, (uints)(OPAL_NONE)));
+    put(out, HIT_LIGHT_DENSITY, stride, base, density);
+}
