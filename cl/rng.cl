@@ -68,11 +68,11 @@ uints owen_scramble(uints x, uints seed) {
 // hence five butterflies on the reversed bits.
 uints sobol_second(uints i) {
     uints x = reverse_bits(i);
-    x ^= (x & 0xaaaaaaaau) >> 1;
-    x ^= (x & 0xccccccccu) >> 2;
-    x ^= (x & 0xf0f0f0f0u) >> 4;
-    x ^= (x & 0xff00ff00u) >> 8;
-    x ^= (x & 0xffff0000u) >> 16;
+    x ^= (x & 0x55555555u) << 1;
+    x ^= (x & 0x33333333u) << 2;
+    x ^= (x & 0x0f0f0f0fu) << 4;
+    x ^= (x & 0x00ff00ffu) << 8;
+    x ^= (x & 0x0000ffffu) << 16;
     return x;
 }
 
