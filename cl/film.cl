@@ -19,8 +19,10 @@ Sum sum_add(Sum s, real x, mask valid) {
     x = valid ? x : (real)(0);
     real hi = s.hi + x;
     real part = hi - s.hi;
-    real lo = (s.hi - (hi - part)) + (x - part);
-    Sum r = {hi, s.lo + lo};
+    real lo = s.lo + ((s.hi - (hi - part)) + (x - part));
+    Sum r;
+    r.hi = hi + lo; // again, or lo grows until it rounds as a plain sum does
+    r.lo = lo - (r.hi - hi);
     return r;
 }
 

@@ -1,0 +1,24 @@
+// Scenes whose pixels are known on paper (derivations in support/rooms.h).
+#include "stats/hypothesis.h"
+#include "support/checks.h"
+#include "support/device.h"
+#include "support/seeds.h"
+
+using namespace opal;
+using namespace opal::test;
+
+TEST_CASE("A furnace shows emitted / (1 - albedo) in every strategy", "[analytic]") {
+    require_all_pass(check_furnace(Sources::embedded(), test_seed(1)));
+}
+
+TEST_CASE("Light in glass is n^2 brighter, sample by sample", "[analytic]") {
+    require_all_pass(check_glass_furnace(Sources::embedded(), test_seed(2)));
+}
+
+TEST_CASE("A triangle light over a floor follows Lambert's formula", "[analytic]") {
+    require_all_pass(check_triangle_light(Sources::embedded(), test_seed(3)));
+}
+
+TEST_CASE("A point light follows the inverse square", "[analytic]") {
+    require_all_pass(check_point_light(Sources::embedded(), test_seed(4)));
+}

@@ -1,0 +1,71 @@
+// Sums of samples: none is lost, none that is not finite is kept.
+#include "support/checks.h"
+#include "support/device.h"
+#include "support/mutants.h"
+#include "support/pictures.h"
+#include "support/rooms.h"
+#include "support/scratch.h"
+#include "support/seeds.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+using namespace opal;
+using namespace opal::test;
+
+namespace {
+
+// Every sample of pixels 5, 16, 27, ... of a pass of one sample is NaN or, where `what` says so, infinite.
+Mutant spoiled(const std::string &what) {
+    return {"pixels " + what, "kernels/render.cl", "slot[0] = r[lane];", "slot[0] = place[lane] % 11u == 5u ? " + what + " : r[lane];"};
+}
+
+} // namespace
+
+TEST_CASE("Sums of many samples lose nothing, and leave out what is not finite", "[film]") {
+    require_all_pass(check_film(Sources::embedded(), test_seed(40)));
+}
+
+TEST_CASE("Invalid samples are counted, placed and left out of the mean", "[film]") {
+    const SceneDescription scene = with(furnace(0.5, 1), {{"lighting", "bsdf"}, {"hemisphere", "cosine"}, {"rr", "off"}, {"max-depth", "3"}});
+    for (const char *what : {"NAN", "INFINITY", "-INFINITY"}) {
+        INFO(what);
+        const Sources sources = mutated(Sources::embedded(), spoiled(what));
+        Shot shot;
+        shot.sources = &sources;
+        shot.max_pass_samples = 1;
+        const Film film = render(scene, 4, 1, shot);
+        size_t spoiled_pixels = 0;
+        for (size_t p = 0; p < film.count.size(); p++) {
+            CHECK(film.count[p] == (p % 11 == 5 ? 0u : 4u));
+            spoiled_pixels += p % 11 == 5;
+        }
+        CHECK(film.invalid == 4 * spoiled_pixels);
+        REQUIRE(film.invalid_places.size() == 8);
+        for (const InvalidSample &place : film.invalid_places)
+            CHECK((place.y * unsigned(film.width) + place.x) % 11 == 5);
+        CHECK(statistics_of(film).invalid == film.invalid);
+        CHECK(statistics_of(film).mean_luminance == Approx(1.75).epsilon(1e-6));
+        const Image image = image_of(film, true);
+        for (const Layer &layer : image.layers)
+            for (float value : layer.values)
+                CHECK(std::isfinite(value));
+    }
+}
+
+TEST_CASE("The binary tells of invalid samples, in words and in the JSON", "[film]") {
+    const ScratchFolder folder;
+    for (const auto &[name, text] : mutated(Sources::embedded(), spoiled("NAN")).files)
+        folder.write("cl/" + name, text);
+    const std::string json = folder / "statistics.json";
+    const Outcome outcome = run_shell(std::string(OPAL_BINARY) + " render " OPAL_SOURCE_DIR "/scenes/furnace.xml --width 8 --height 8 --spp 1 --no-png -o " +
+                                      std::string(folder / "out.exr") + " --json " + json + " --cl-dir " + std::string(folder / "cl"));
+    INFO(outcome.err);
+    CHECK(outcome.exit_code == 0);
+    CHECK_THAT(outcome.err, Catch::Contains("6 samples were NaN or infinite") && Catch::Contains("pixel (5, 0) sample 0"));
+    const nlohmann::json report = nlohmann::json::parse(read_text(json));
+    CHECK(report["invalid_samples"] == 6);
+    CHECK(report["invalid_places"].size() == 6);
+    CHECK(std::isfinite(report["mean_luminance"].get<double>()));
+}

@@ -1,0 +1,76 @@
+// Estimators that mean the same, held against each other.
+#include "stats/hypothesis.h"
+#include "support/checks.h"
+#include "support/pictures.h"
+#include "support/rooms.h"
+
+#include <cmath>
+
+namespace opal::test {
+
+namespace {
+
+using Strategies = std::vector<Overrides>;
+
+struct Group {
+    std::string name;
+    SceneDescription scene;
+    unsigned spp;
+    Strategies strategies;
+};
+
+Group path_group() {
+    return {"path",
+            gallery(),
+            128,
+            {{{"lighting", "bsdf"}},
+             {{"lighting", "bsdf"}, {"hemisphere", "cosine"}},
+             {{"lighting", "emitter"}},
+             {{"lighting", "mis"}, {"mis", "balance"}},
+             {{"lighting", "mis"}, {"mis", "power"}},
+             {{"lighting", "mis"}, {"hemisphere", "uniform"}}}};
+}
+
+Group direct_group() {
+    return {"direct",
+            matte_gallery(),
+            128,
+            {{{"integrator", "direct_lighting"}, {"lighting", "bsdf"}},
+             {{"integrator", "direct_lighting"}, {"lighting", "emitter"}},
+             {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "balance"}},
+             {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "power"}},
+             {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "one-sample"}},
+             {{"integrator", "whitted"}},
+             {{"integrator", "path_mis"}, {"max-depth", "2"}, {"emitter-choice", "power"}, {"triangle-choice", "uniform"}},
+             {{"integrator", "path_ems"}, {"max-depth", "2"}, {"triangle-choice", "uniform"}}}};
+}
+
+// Means of the luminance, each strategy against every other.
+Findings agreement_of(const Group &group, const Sources &sources, unsigned seed) {
+    Shot shot;
+    shot.sources = &sources;
+    std::vector<stats::Sample> samples;
+    Findings findings;
+    for (Overrides how : group.strategies) {
+        how["specialise"] = "off";
+        const Film film = render(with(group.scene, how), group.spp, seed + unsigned(samples.size()), shot);
+        samples.push_back(sample_of(film));
+        findings.push_back(exact(group.name + ": no invalid samples", film.invalid == 0));
+    }
+    for (size_t i = 0; i < samples.size(); i++)
+        for (size_t j = i + 1; j < samples.size(); j++)
+            findings.push_back({group.name + ": strategies " + std::to_string(i) + " and " + std::to_string(j),
+                                stats::welch_test(samples[i], samples[j]).p_value});
+    return findings;
+}
+
+} // namespace
+
+Findings check_agreement(const Sources &sources, unsigned seed) {
+    Findings findings = agreement_of(path_group(), sources, seed);
+    const Findings direct = agreement_of(direct_group(), sources, seed + 100);
+    findings.insert(findings.end(), direct.begin(), direct.end());
+    return findings;
+}
+
+} // namespace opal::test

@@ -1,0 +1,106 @@
+#include "support/checks.h"
+
+#include "stats/hypothesis.h"
+#include "support/pictures.h"
+#include "support/rooms.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+namespace opal::test {
+
+namespace {
+
+// Renders one strategy after the other in one kernel that decides at run time, so that a check costs one compilation.
+Film render_general(SceneDescription scene, const Overrides &overrides, unsigned spp, unsigned seed, const Sources &sources) {
+    Overrides all = overrides;
+    all["specialise"] = "off";
+    Shot shot;
+    shot.sources = &sources;
+    return render(with(std::move(scene), all), spp, seed, shot);
+}
+
+std::string text_of(const Overrides &overrides) {
+    std::string text;
+    for (const auto &[name, value] : overrides)
+        text += " " + name + " " + value;
+    return text.empty() ? text : text.substr(1);
+}
+
+Finding mean_is(const std::string &what, const Film &film, double truth, int channel = 3) {
+    return {what, stats::z_test(sample_of(film, channel), truth).p_value};
+}
+
+} // namespace
+
+const Finding &worst(const Findings &findings) {
+    return *std::min_element(findings.begin(), findings.end(), [](const Finding &a, const Finding &b) { return !(a.p >= b.p); });
+}
+
+bool rejected(const Findings &findings) {
+    return findings.empty() || !(worst(findings).p >= stats::sidak_level(check_level, double(findings.size())));
+}
+
+void require_all_pass(const Findings &findings) {
+    REQUIRE_FALSE(findings.empty());
+    for (const Finding &finding : findings) {
+        INFO(finding.what);
+        CHECK(finding.p >= stats::sidak_level(check_level, double(findings.size())));
+    }
+}
+
+Finding exact(const std::string &what, bool holds) { return {what, holds ? 1.0 : 0.0}; }
+
+Findings check_furnace(const Sources &sources, unsigned seed) {
+    Findings findings;
+    const auto shows = [&](const SceneDescription &scene, const Overrides &overrides, double truth) {
+        const Film film = render_general(scene, overrides, 128, seed + unsigned(findings.size()), sources);
+        findings.push_back(mean_is("furnace, " + text_of(overrides), film, truth));
+        findings.push_back(exact("no invalid samples", film.invalid == 0));
+    };
+    const SceneDescription box = furnace(0.5, 1);
+    for (const char *rr : {"fixed", "throughput", "throughput-eta"})
+        for (const Overrides &how : {Overrides{{"lighting", "bsdf"}, {"hemisphere", "cosine"}}, Overrides{{"lighting", "mis"}, {"mis", "balance"}},
+                                     Overrides{{"lighting", "mis"}, {"mis", "power"}, {"hemisphere", "cosine"}}}) {
+            Overrides all = how;
+            all["rr"] = rr;
+            shows(box, all, 2);
+        }
+    // Without roulette every path gathers the partial sum of the geometric series, without noise.
+    shows(box, {{"lighting", "bsdf"}, {"hemisphere", "cosine"}, {"rr", "off"}, {"max-depth", "5"}}, 2 * (1 - std::pow(0.5, 5)));
+    return findings;
+}
+
+Findings check_glass_furnace(const Sources &sources, unsigned seed) {
+    const Film film = render_general(glass_furnace(), {{"lighting", "mis"}, {"rr", "off"}, {"max-depth", "2000"}}, 64, seed, sources);
+    Findings findings{mean_is("radiance in glass", film, 2.25), exact("no invalid samples", film.invalid == 0)};
+    const stats::Sample sample = sample_of(film);
+    findings.push_back(exact("without noise", sample.variance < 1e-5)); // squares are rounded to float
+    return findings;
+}
+
+Findings check_triangle_light(const Sources &sources, unsigned seed) {
+    Findings findings;
+    for (const Overrides &how : {Overrides{{"lighting", "bsdf"}}, Overrides{{"lighting", "emitter"}}, Overrides{{"lighting", "mis"}, {"mis", "balance"}},
+                                 Overrides{{"lighting", "mis"}, {"mis", "power"}}, Overrides{{"lighting", "bsdf"}, {"hemisphere", "uniform"}},
+                                 Overrides{{"lighting", "emitter"}, {"sampler", "sobol"}},
+                                 Overrides{{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "one-sample"}},
+                                 Overrides{{"integrator", "whitted"}}}) {
+        const Film film = render_general(triangle_light(), how, 4096, seed + unsigned(findings.size()), sources);
+        findings.push_back(mean_is("triangle light, " + text_of(how), film, triangle_light_truth(), 0));
+    }
+    return findings;
+}
+
+Findings check_point_light(const Sources &sources, unsigned seed) {
+    Findings findings;
+    for (const Overrides &how : {Overrides{{"lighting", "emitter"}}, Overrides{{"lighting", "mis"}}, Overrides{{"integrator", "whitted"}},
+                                 Overrides{{"integrator", "direct_lighting"}, {"lighting", "emitter"}}}) {
+        const Film film = render_general(point_light(), how, 4, seed, sources);
+        findings.push_back(mean_is("point light, " + text_of(how), film, point_light_truth(), 0));
+    }
+    return findings;
+}
+
+} // namespace opal::test

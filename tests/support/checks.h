@@ -1,0 +1,44 @@
+// Checks of rendering that a test runs on the kernels as they are, and a negative control on mutants of them (support/mutants.h):
+// what passes for the one must fail for the other.
+#pragma once
+
+#include "device/program.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace opal::test {
+
+// One comparison: its p-value, or 0 and 1 where it is exact.
+struct Finding {
+    std::string what;
+    double p;
+};
+using Findings = std::vector<Finding>;
+
+// A check at this level, split over its findings (Sidak): a right kernel fails one check in a hundred thousand.
+constexpr double check_level = 1e-5;
+const Finding &worst(const Findings &findings);
+bool rejected(const Findings &findings);
+void require_all_pass(const Findings &findings); // CHECKs each, with what it is
+
+Finding exact(const std::string &what, bool holds);
+
+using Check = std::function<Findings(const Sources &sources, unsigned seed)>;
+
+Findings check_furnace(const Sources &sources, unsigned seed);
+Findings check_glass_furnace(const Sources &sources, unsigned seed);
+Findings check_triangle_light(const Sources &sources, unsigned seed);
+Findings check_point_light(const Sources &sources, unsigned seed);
+
+// Estimators with one expectation, each held against the others: path tracing in a room of all materials; direct light in a matte
+// one, where direct_lighting, whitted and paths of two segments mean the same; ambient occlusion; Russian roulette.
+Findings check_agreement(const Sources &sources, unsigned seed);
+
+// The film's sums of slots against double on the host, for samples of very different size.
+Findings check_film(const Sources &sources, unsigned seed);
+// Passes cut differently: the same bits.
+Findings check_passes(const Sources &sources, unsigned seed);
+
+} // namespace opal::test

@@ -1,0 +1,95 @@
+// The film's kernels on samples of the test's own making.
+#include "stats/moments.h"
+#include "support/checks.h"
+#include "support/device.h"
+#include "support/pictures.h"
+#include "support/rooms.h"
+
+#include <cmath>
+#include <cstring>
+#include <random>
+
+namespace opal::test {
+
+namespace {
+
+constexpr unsigned planes = 22, pixels = 3; // as in cl/film.cl
+constexpr unsigned samples = 1u << 18;
+
+// Slots of `samples` samples a pixel: pixel 0 one value throughout, which a plain sum of floats rounds away from some size
+// on; pixel 1 of very different sizes; pixel 2 with NaN and infinity among them.
+std::vector<float> slots_of(unsigned seed) {
+    std::mt19937 random(seed);
+    std::vector<float> slots(size_t(3) * pixels * samples);
+    for (size_t i = 0; i < slots.size(); i++) {
+        const size_t pixel = i / (3 * samples);
+        slots[i] = pixel == 0 ? 0.1f : pixel == 1 ? std::ldexp(float(random() >> 8), int(random() % 40) - 44) : float(random() >> 8) * 0x1p-24f;
+    }
+    float *last = slots.data() + size_t(3) * 2 * samples;
+    last[3 * 5] = NAN;
+    last[3 * 70 + 1] = INFINITY;
+    last[3 * 71 + 2] = -INFINITY;
+    return slots;
+}
+
+bool close(double value, double truth) { return std::abs(value - truth) <= 1e-9 * std::abs(truth); }
+
+} // namespace
+
+Findings check_film(const Sources &sources, unsigned seed) {
+    const std::vector<float> slots = slots_of(seed);
+    Settings settings{};
+    settings.width = pixels;
+    settings.height = 1;
+    Findings findings;
+    for (int lanes : tested_lanes()) {
+        BuildOptions build;
+        build.lanes = lanes;
+        const cl::Program program = build_program(device(), program_text(all_features({{"wide_filter", false}}), build, sources), build);
+        const Output<float> film(planes * pixels);
+        const Output<cl_uint> counts(pixels), invalid(17);
+        // In two passes, so that the sums of one go on in the next.
+        const unsigned first = samples / 4;
+        for (const auto &[from, count] : {std::pair{0u, first}, std::pair{first, samples - first}}) {
+            std::vector<float> pass;
+            for (unsigned p = 0; p < pixels; p++)
+                pass.insert(pass.end(), slots.begin() + 3 * (ptrdiff_t(p) * samples + from), slots.begin() + 3 * (ptrdiff_t(p) * samples + from + count));
+            run(program, "gather", (pixels + size_t(lanes) - 1) / size_t(lanes), std::vector<Settings>{settings}, pass, film, counts, invalid, cl_uint(from), cl_uint(count));
+        }
+        const std::vector<float> sums = film.read();
+        const auto value = [&](unsigned plane, unsigned low, unsigned p) { return double(sums[plane * pixels + p]) + double(sums[(plane + low) * pixels + p]); };
+        for (unsigned p = 0; p < pixels; p++)
+            for (unsigned c = 0; c < 3; c++) {
+                stats::CompensatedSum sum, squares;
+                for (unsigned s = 0; s < samples; s++) {
+                    const float *color = &slots[3 * (size_t(p) * samples + s)];
+                    if (!std::isfinite(color[0] + color[1] + color[2]))
+                        continue;
+                    sum.add(color[c]);
+                    squares.add(double(color[c] * color[c]));
+                }
+                const std::string where = std::to_string(lanes) + " lanes, pixel " + std::to_string(p) + ": ";
+                findings.push_back(exact(where + "sum", close(value(0 + c, 3, p), sum.value())));
+                findings.push_back(exact(where + "squares", close(value(6 + c, 4, p), squares.value())));
+            }
+        findings.push_back(exact("samples counted", counts.read() == std::vector<cl_uint>{samples, samples, samples - 3}));
+        const std::vector<cl_uint> found = invalid.read();
+        findings.push_back(exact("invalid samples counted and placed",
+                                 std::vector<cl_uint>(found.begin(), found.begin() + 7) == std::vector<cl_uint>{3, 2, 5, 2, 70, 2, 71}));
+    }
+    return findings;
+}
+
+Findings check_passes(const Sources &sources, unsigned seed) {
+    std::vector<Film> films;
+    for (unsigned most : {0u, 3u}) {
+        Shot shot;
+        shot.sources = &sources;
+        shot.max_pass_samples = most;
+        films.push_back(render(with(gallery(9, 9), {{"specialise", "off"}}), 17, seed, shot));
+    }
+    return {exact("sums", films[0].sum == films[1].sum), exact("squares", films[0].squares == films[1].squares),
+            exact("counts", films[0].count == films[1].count)};
+}
+
+} // namespace opal::test

@@ -1,0 +1,42 @@
+#include "support/mutants.h"
+
+#include "base/error.h"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+namespace opal::test {
+
+Sources mutated(const Sources &sources, const Mutant &mutant) {
+    Sources changed = sources;
+    const auto file = changed.files.find(mutant.file);
+    if (file == changed.files.end())
+        throw Error(fmt::format("mutant \"{}\": there is no file cl/{}", mutant.name, mutant.file));
+    std::string &text = file->second;
+    const size_t place = text.find(mutant.from);
+    if (place == std::string::npos)
+        throw Error(fmt::format("mutant \"{}\": cl/{} has no text \"{}\"", mutant.name, mutant.file, mutant.from));
+    if (text.find(mutant.from, place + 1) != std::string::npos)
+        throw Error(fmt::format("mutant \"{}\": cl/{} has the text \"{}\" more than once", mutant.name, mutant.file, mutant.from));
+    text.replace(place, mutant.from.size(), mutant.to);
+    return changed;
+}
+
+void require_all_killed(const std::vector<Control> &controls, unsigned seed) {
+    size_t killed = 0;
+    for (const Control &control : controls) {
+        const Sources sources = mutated(Sources::embedded(), control.mutant);
+        const Findings findings = control.check(sources, seed);
+        const bool dead = rejected(findings);
+        killed += dead;
+        const Finding &by = worst(findings);
+        fmt::print("{} by {:<14} {} (cl/{}): {}, p = {:.2g}\n", dead ? "killed  " : "SURVIVED", control.check_name, control.mutant.name,
+                   control.mutant.file, by.what, by.p);
+        std::fflush(stdout);
+        CHECK(dead);
+    }
+    fmt::print("{} of {} mutants killed\n", killed, controls.size());
+    CHECK(killed == controls.size());
+}
+
+} // namespace opal::test

@@ -1,0 +1,27 @@
+// Deliberately wrong kernels: named text substitutions on Opal's own sources.
+#pragma once
+
+#include "support/checks.h"
+
+namespace opal::test {
+
+struct Mutant {
+    std::string name;              // what is wrong with it
+    std::string file;              // below cl/
+    std::string from, to;          // `from` must be in the file exactly once
+};
+
+// The sources with that one change. Throws Error where the text is not there, or more than once.
+Sources mutated(const Sources &sources, const Mutant &mutant);
+
+// A mutant and the check that must reject it.
+struct Control {
+    Mutant mutant;
+    std::string check_name;
+    Check check;
+};
+
+// Runs the controls: prints a line for each with the finding that killed it, and CHECKs that all are killed.
+void require_all_killed(const std::vector<Control> &controls, unsigned seed);
+
+} // namespace opal::test

@@ -1,0 +1,169 @@
+#include "support/rooms.h"
+
+#include <numbers>
+
+namespace opal::test {
+
+namespace {
+
+constexpr Vec3 light_corners[3] = {{-0.6, 1, 0.1}, {0.7, 1.3, -0.4}, {0.2, 0.9, 0.8}};
+constexpr Vec3 floor_point = {0.3, 0, 0.2};
+constexpr double floor_albedo = 0.8, light_red = 3;
+
+// The walls of [-1, 1]^3, facing inwards.
+std::vector<Mesh> walls() {
+    return {diffuse(Parallelogram{{-1, -1, -1}, {0, 0, 2}, {2, 0, 0}}, 0.6f),
+            diffuse(Parallelogram{{-1, 1, -1}, {2, 0, 0}, {0, 0, 2}}, 0.7f, true),
+            diffuse(Parallelogram{{-1, -1, 1}, {0, 2, 0}, {2, 0, 0}}, 0.5f, true),
+            diffuse(Parallelogram{{-1, -1, -1}, {2, 0, 0}, {0, 2, 0}}, 0.5f),
+            diffuse(Parallelogram{{-1, -1, -1}, {0, 2, 0}, {0, 0, 2}}, 0.4f, true),
+            diffuse(Parallelogram{{1, -1, -1}, {0, 0, 2}, {0, 2, 0}}, 0.6f)};
+}
+
+// A fan of three triangles under the ceiling, facing down, one of them a sliver.
+TriangleMesh fan_light() {
+    const double y = 0.98;
+    return mesh_of({{-0.7, y, -0.6}, {0.6, y, -0.6}, {0.6, y, 0.5}, {0.596, y, 0.503}, {-0.7, y, 0.5}}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}});
+}
+
+TriangleMesh octahedron(Vec3 center, double size) {
+    TriangleMesh mesh;
+    mesh.normals = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    for (const Vec3 &n : mesh.normals)
+        mesh.positions.push_back(center + n * size);
+    for (unsigned x : {0u, 1u})
+        for (unsigned y : {2u, 3u})
+            for (unsigned z : {4u, 5u}) {
+                const bool flip = (x + (y - 2) + (z - 4)) % 2 == 1;
+                const unsigned second = flip ? z : y, third = flip ? y : z;
+                mesh.triangles.push_back({{{x, x}, {second, second}, {third, third}}});
+            }
+    return mesh;
+}
+
+SceneDescription room(std::vector<Mesh> meshes, int width, int height, bool black_lights) {
+    for (Mesh &wall : walls())
+        meshes.push_back(std::move(wall));
+    meshes.push_back(light(fan_light(), {6, 5, 4}));
+    meshes.push_back(light(Parallelogram{{-0.98, -0.2, -0.3}, {0, 0.7, 0}, {0, 0, 0.8}}, {2, 4, 7}));
+    for (Mesh &mesh : meshes)
+        if (black_lights && mesh.radiance)
+            mesh.bsdf.record = bsdf_record(BSDF_diffuse, 0);
+    SceneDescription scene = scene_of(std::move(meshes));
+    scene.camera = camera({0.1, 0.05, -0.97}, {0, -0.1, 1}, width, height, 85);
+    return scene;
+}
+
+} // namespace
+
+Camera camera(Vec3 from, Vec3 to, int width, int height, double fov) {
+    Camera camera;
+    const Vec3 d = normalize(to - from);
+    camera.to_world = Transform::look_at(from, to, std::abs(d.y) > 0.9 ? Vec3{0, 0, 1} : Vec3{0, 1, 0});
+    camera.width = width;
+    camera.height = height;
+    camera.fov = fov;
+    return camera;
+}
+
+TriangleMesh quad(Vec3 o, Vec3 u, Vec3 v) { return mesh_of({o, o + u, o + u + v, o + v}, {{0, 1, 2}, {0, 2, 3}}); }
+
+TriangleMesh cube(Vec3 center, double size, bool inwards) {
+    TriangleMesh mesh;
+    for (unsigned corner = 0; corner < 8; corner++)
+        mesh.positions.push_back(center + Vec3{corner & 1 ? size : -size, corner & 2 ? size : -size, corner & 4 ? size : -size});
+    const unsigned faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}; // outwards
+    for (const auto &f : faces)
+        for (unsigned i : {1u, 2u}) {
+            const unsigned b = f[inwards ? i + 1 : i], c = f[inwards ? i : i + 1];
+            mesh.triangles.push_back({{{f[0], OPAL_NONE}, {b, OPAL_NONE}, {c, OPAL_NONE}}});
+        }
+    return mesh;
+}
+
+BsdfRecord bsdf_record(int kind, float reflectance) {
+    BsdfRecord record{};
+    record.kind = uint(kind);
+    const float r = reflectance;
+    if (kind == BSDF_diffuse)
+        record.u.diffuse = {{r, r, r}, 1};
+    if (kind == BSDF_dielectric)
+        record.u.dielectric = {1.5f, 1};
+    if (kind == BSDF_microfacet)
+        record.u.microfacet = {0.2f, 1.5f, 1, 1 - r, {r, r, r}};
+    if (kind == BSDF_phong)
+        record.u.phong = {{r, r, r}, 0.5f, {r, r, r}, 20};
+    return record;
+}
+
+Mesh made_of(TriangleMesh shape, const BsdfRecord &bsdf) {
+    Mesh mesh = diffuse(std::move(shape));
+    mesh.bsdf.record = bsdf;
+    return mesh;
+}
+
+SceneDescription furnace(double albedo, double emitted) {
+    Mesh walls = diffuse(cube({}, 1, true), float(albedo));
+    walls.radiance = Color{emitted, emitted, emitted};
+    SceneDescription scene = scene_of({walls});
+    scene.camera = camera({0.1, 0.2, -0.3}, {0.3, 0, 1}, 8, 8, 70);
+    return scene;
+}
+
+SceneDescription glass_furnace() {
+    SceneDescription scene = furnace(0, 1);
+    const TriangleMesh tetrahedron =
+        mesh_of({{-0.8, -0.7, -0.6}, {0.9, -0.6, -0.7}, {0.1, -0.5, 0.95}, {0.15, 0.85, -0.1}}, {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}});
+    scene.meshes.push_back(made_of(tetrahedron, bsdf_record(BSDF_dielectric)));
+    scene.camera = camera({0.1, -0.3, -0.2}, {0.3, 0, 1}, 8, 8, 70);
+    return scene;
+}
+
+SceneDescription triangle_light() {
+    SceneDescription scene = scene_of({diffuse(Parallelogram{{-3, 0, -3}, {0, 0, 6}, {6, 0, 0}}, float(floor_albedo), true),
+                                       light(mesh_of({light_corners[0], light_corners[1], light_corners[2]}, {{0, 1, 2}}),
+                                             {light_red, 2, 1})});
+    scene.camera = camera({2, 1.5, -2}, floor_point, 4, 4, 1e-3);
+    scene.strategy.max_depth = 2;
+    return scene;
+}
+
+double triangle_light_truth() {
+    double sum = 0;
+    for (int i = 0; i < 3; i++) {
+        const Vec3 a = normalize(light_corners[i] - floor_point), b = normalize(light_corners[(i + 1) % 3] - floor_point);
+        sum += std::acos(dot(a, b)) * normalize(cross(a, b)).y;
+    }
+    return floor_albedo / std::numbers::pi * light_red / 2 * std::abs(sum);
+}
+
+SceneDescription point_light() {
+    SceneDescription scene = triangle_light();
+    scene.meshes.pop_back();
+    scene.point_lights = {{{0.5, 1.5, 0.9}, {100, 50, 20}, {}}};
+    return scene;
+}
+
+double point_light_truth() {
+    const Vec3 d = Vec3{0.5, 1.5, 0.9} - floor_point;
+    return floor_albedo / std::numbers::pi * 100 / (4 * std::numbers::pi) * d.y / std::pow(length(d), 3);
+}
+
+SceneDescription gallery(int width, int height) {
+    return room({made_of(quad({0.98, -0.6, -0.2}, {0, 0, 0.8}, {0, 0.9, 0}), bsdf_record(BSDF_mirror)),
+                 made_of(quad({-0.8, -0.7, 0.97}, {0, 0.9, 0}, {0.8, 0, 0}), bsdf_record(BSDF_microfacet, 0.3f)),
+                 made_of(quad({-0.8, -0.97, -0.6}, {0, 0, 0.9}, {0.8, 0, 0}), bsdf_record(BSDF_phong, 0.7f)),
+                 made_of(cube({0.35, -0.6, 0.3}, 0.25), bsdf_record(BSDF_dielectric)),
+                 made_of(octahedron({-0.4, -0.5, 0.3}, 0.35), bsdf_record(BSDF_diffuse, 0.7f))},
+                width, height, false);
+}
+
+SceneDescription matte_gallery(int width, int height) {
+    return room({made_of(quad({-0.8, -0.7, 0.97}, {0, 0.9, 0}, {0.8, 0, 0}), bsdf_record(BSDF_microfacet, 0.3f)),
+                 made_of(quad({-0.8, -0.97, -0.6}, {0, 0, 0.9}, {0.8, 0, 0}), bsdf_record(BSDF_phong, 0.7f)),
+                 made_of(cube({0.35, -0.6, 0.3}, 0.25), bsdf_record(BSDF_diffuse)),
+                 made_of(octahedron({-0.4, -0.5, 0.3}, 0.35), bsdf_record(BSDF_diffuse, 0.7f))},
+                width, height, true);
+}
+
+} // namespace opal::test
