@@ -1,6 +1,7 @@
 #include "flatten/bvh.h"
 
 #include "flatten/collapse.h"
+#include "flatten/reinsertion.h"
 
 #include <utility>
 
@@ -24,6 +25,7 @@ Bvh build_bvh(const TriangleSoup &soup) {
     if (soup.corners.empty())
         return {{}, pack_blocks(soup), OPAL_LEAF};
     BinaryTree tree = build_binary_tree(soup);
+    optimise_by_reinsertion(tree);
     return collapse(tree, soup);
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/math.h"
 #include "flatten/collapse.h"
+#include "flatten/reinsertion.h"
 
 #include <catch2/catch.hpp>
 
@@ -282,16 +283,25 @@ void cut_in_halves(BinaryTree &tree, uint index, bool ordered) {
     cut_in_halves(tree, tree.nodes[index].left + 1, ordered);
 }
 
-double cost_of_halves(const TriangleSoup &soup, bool ordered) {
+BinaryTree halves_of(const TriangleSoup &soup, bool ordered) {
     BinaryTree tree = build_binary_tree(soup); // for its references
     if (!ordered)
         std::shuffle(tree.references.begin(), tree.references.end(), std::mt19937(1));
     tree.nodes[0] = {Box::empty(), 0, uint(soup.corners.size()), 0};
     tree.node_count = 1;
     cut_in_halves(tree, 0, ordered);
+    return tree;
+}
+
+double cost_of(BinaryTree &tree, const TriangleSoup &soup) {
     const Bvh bvh = collapse(tree, soup);
     check_structure(soup, bvh);
     return sah_cost(bvh);
+}
+
+double cost_of_halves(const TriangleSoup &soup, bool ordered) {
+    BinaryTree tree = halves_of(soup, ordered);
+    return cost_of(tree, soup);
 }
 
 } // namespace
@@ -371,4 +381,15 @@ TEST_CASE("trees cost what good trees cost, and bad ones more", "[bvh]") {
         CHECK(halves > cost);
         CHECK(unordered > 2 * c.limit);
     }
+}
+
+TEST_CASE("reinsertion mends a poor tree and keeps it whole", "[bvh]") {
+    // Small things everywhere and a few large ones among them: the large ones should not lie beside small ones.
+    TriangleSoup soup = random_soup(5000, 0.02f, 4);
+    Random random(8);
+    for (int i = 0; i < 50; i++)
+        add_triangle(soup, random.point(1), random.point(1), random.point(1));
+    BinaryTree poor = halves_of(soup, true), mended = halves_of(soup, true);
+    optimise_by_reinsertion(mended);
+    CHECK(cost_of(mended, soup) < 0.95 * cost_of(poor, soup)); // 0.925 when written
 }
