@@ -1,5 +1,6 @@
-// bvh: closest and any hit of each lane. With a tree each lane walks it alone, with the eight children or triangles of a
-// node in one vector (DESIGN: packets of lanes were slower). A tiny scene does without: each triangle against all lanes.
+// bvh: closest and any hit of each lane. The largest triangles of a scene, or all of a tiny one, are listed: each is tested
+// against all lanes at once. The others are in a tree, which each lane walks alone, with the eight children or triangles of
+// a node in one vector; a lane whose ray misses the tree's box does not walk.
 #define STACK_SIZE 64 // flatten bounds the tree's depth so that this is never exceeded
 
 // The axis of the largest component of d, and with it the shear of triangle.cl.
@@ -71,13 +72,12 @@ ulong intersect_children(global const BvhNode *node, const LaneRay *ray, real8 *
     return bytes_of(*entry <= real8_min(leave, (real8)(ray->tmax)));
 }
 
-// Nearest hit of one ray; slot = OPAL_NONE where there is none.
+// Nearest hit of one ray before its tmax; leaves the outputs as they are where there is none.
 void walk_closest(const Scene *scene, LaneRay ray, real1 *t_out, real1 *u_out, real1 *v_out, uint *slot_out) {
     uint stack[STACK_SIZE];
     real1 entries[STACK_SIZE];
     int top = 0;
     uint child = scene->settings->root;
-    *slot_out = OPAL_NONE;
     for (;;) {
         if (child & OPAL_LEAF) {
             uint block = child & ~OPAL_LEAF;
@@ -92,7 +92,7 @@ void walk_closest(const Scene *scene, LaneRay ray, real1 *t_out, real1 *u_out, r
                 for (; test.hits; test.hits &= test.hits - 1) {
                     uint i = first_of(test.hits);
                     if (t[i] < ray.tmax) {
-                        ray.tmax = t[i];
+                        *t_out = ray.tmax = t[i];
                         *u_out = b[i] * reciprocal[i];
                         *v_out = c[i] * reciprocal[i];
                         *slot_out = block * 8 + i;
@@ -120,10 +120,7 @@ void walk_closest(const Scene *scene, LaneRay ray, real1 *t_out, real1 *u_out, r
             }
         }
         do {
-            if (top == 0) {
-                *t_out = ray.tmax;
-                return;
-            }
+            if (top == 0) return;
             child = stack[--top];
         } while (entries[top] >= ray.tmax);
     }
@@ -147,7 +144,7 @@ int walk_any(const Scene *scene, LaneRay ray) {
     }
 }
 
-// Without a tree: the vertices as all lanes see them, moved and sheared once for all triangles that share them.
+// Listed triangles: the vertices as all lanes see them, moved and sheared once for all triangles that share them.
 typedef struct { real x[OPAL_TINY_VERTICES], y[OPAL_TINY_VERTICES], z[OPAL_TINY_VERTICES]; } TinyView;
 
 void view_vertices(const Scene *scene, Ray ray, TinyView *view) {
@@ -215,30 +212,45 @@ mask tiny_any(const Scene *scene, Ray ray, mask live) {
     return blocked & live;
 }
 
+// The lanes whose ray meets the tree's box, as intersect_children has it.
+mask meets_tree(global const Settings *settings, Ray ray) {
+    v3 inverse = v3_of(safe_inverse(ray.d.x), safe_inverse(ray.d.y), safe_inverse(ray.d.z));
+    v3 a = v3_mul(v3_sub(v3_from(settings->root_lo), ray.o), inverse), b = v3_mul(v3_sub(v3_from(settings->root_hi), ray.o), inverse);
+    real enter = real_max(real_max(real_min(a.x, b.x), real_min(a.y, b.y)), real_max(real_min(a.z, b.z), ray.tmin));
+    real leave = real_min(real_min(real_max(a.x, b.x), real_max(a.y, b.y)), real_max(a.z, b.z)) * (1 + 8 * EPSILON);
+    return enter <= real_min(leave, ray.tmax);
+}
+
 // The nearest hit of each live lane.
 Hit closest_hit(const Scene *scene, Ray ray, mask live) {
-    if (!OPAL_HAS_tree) return tiny_closest(scene, ray, live);
+    Hit hit = {ray.tmax, (real)(0), (real)(0), (uints)(OPAL_NONE)};
+    if (OPAL_HAS_listed) hit = tiny_closest(scene, ray, live);
+    if (!OPAL_HAS_tree) return hit;
+    ray.tmax = hit.t;
+    live = live & meets_tree(scene->settings, ray);
+    if (!ANY(live)) return hit;
     LaneRays rays;
     store_rays(&rays, ray, live);
     real1 t[LANES], u[LANES], v[LANES];
     uint slot[LANES];
-    for (int lane = 0; lane < LANES; lane++) {
-        slot[lane] = OPAL_NONE;
-        t[lane] = u[lane] = v[lane] = 0;
+    STORE(hit.t, t); STORE(hit.u, u); STORE(hit.v, v); STORE(hit.slot, slot);
+    for (int lane = 0; lane < LANES; lane++)
         if (rays.live[lane]) walk_closest(scene, load_ray(&rays, lane), t + lane, u + lane, v + lane, slot + lane);
-    }
-    Hit hit = {LOAD(real, t), LOAD(real, u), LOAD(real, v), LOAD(uints, slot)};
-    return hit;
+    Hit nearest = {LOAD(real, t), LOAD(real, u), LOAD(real, v), LOAD(uints, slot)};
+    return nearest;
 }
 
 // The live lanes whose way is blocked between tmin and tmax.
 mask any_hit(const Scene *scene, Ray ray, mask live) {
-    if (!OPAL_HAS_tree) return tiny_any(scene, ray, live);
+    mask listed = NO_LANES;
+    if (OPAL_HAS_listed) listed = tiny_any(scene, ray, live);
+    if (!OPAL_HAS_tree) return listed;
+    live = live & (!listed) & meets_tree(scene->settings, ray);
+    if (!ANY(live)) return listed;
     LaneRays rays;
     store_rays(&rays, ray, live);
     int blocked[LANES];
-    for (int lane = 0; lane < LANES; lane++)
-        blocked[lane] = rays.live[lane] ? walk_any(scene, load_ray(&rays, lane)) : 0;
+    for (int lane = 0; lane < LANES; lane++) blocked[lane] = rays.live[lane] ? walk_any(scene, load_ray(&rays, lane)) : 0;
     ints found = LOAD(ints, blocked);
-    return to_mask(found != 0) & live;
+    return listed | (to_mask(found != 0) & live);
 }

@@ -15,7 +15,8 @@
     OPAL_EMITTERS(OPAL_EMITTER_FEATURE) \
     OPAL_FEATURE_ROW(many_emitters)    /* more than one emitter: choose; else emitter 0 is meant */ \
     OPAL_FEATURE_ROW(shading_normals)  /* some mesh interpolates vertex normals */ \
-    OPAL_FEATURE_ROW(tree)             /* walk the tree; else each triangle against all lanes */ \
+    OPAL_FEATURE_ROW(listed)           /* some triangles (all of a tiny scene, the largest of others) are tested against all lanes */ \
+    OPAL_FEATURE_ROW(tree)             /* the others are in a tree, walked lane by lane */ \
     OPAL_FEATURE_ROW(wide_filter)      /* the pixel filter reaches over its pixel */
 
 #endif

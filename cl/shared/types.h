@@ -12,8 +12,8 @@ namespace opal {
 #define OPAL_NONE 0xffffffffu        // no emitter, no normal, no hit, no depth limit
 #define OPAL_LEAF 0x80000000u        // a child that is a triangle block
 #define OPAL_STACK 64                // entries that a walk of the tree never exceeds: every other child of every node on the way
-#define OPAL_TINY_TRIANGLES 48       // no tree up to this many triangles where lanes are many ...
-#define OPAL_TINY_VERTICES 96        // ... and up to this many distinct vertices
+#define OPAL_TINY_TRIANGLES 48       // at most so many triangles are listed outside the tree, where lanes are many ...
+#define OPAL_TINY_VERTICES 96        // ... with at most so many distinct vertices
 
 // A node of the 8-wide tree: the boxes of its children, one axis and side a row, and what they are.
 // An unused child is OPAL_NONE and has lo = +inf, hi = -inf: a slab test misses it that picks near and far by the
@@ -39,7 +39,8 @@ typedef struct {
 } Triangle;
 OPAL_SIZE_CHECK(Triangle, 16);
 
-// Without a tree: a triangle's corners in the array of distinct vertices, and its slot (block * 8 + place).
+// A listed triangle, which is tested against all lanes at once: its corners in the array of distinct vertices, and its
+// slot (block * 8 + place).
 typedef struct {
     uint corner[3];
     uint slot;
@@ -65,6 +66,7 @@ typedef struct {
     uint width, height;             // pixels
     uint spp;                       // samples of a pixel in the whole render (the strata of --sampler stratified)
     uint seed;
+    float root_lo[3], root_hi[3];   // box of the tree; empty (lo > hi) without one
     uint root;                      // of the tree, as BvhNode::child
     uint tiny_triangle_count, tiny_vertex_count;
     uint emitter_count;
@@ -81,7 +83,7 @@ typedef struct {
     int choices[AXIS_COUNT];        // CHOICE_* of each axis; read by the general kernel only
     uint pad;
 } Settings;
-OPAL_SIZE_CHECK(Settings, 192);
+OPAL_SIZE_CHECK(Settings, 216);
 
 #ifdef __cplusplus
 }

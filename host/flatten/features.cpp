@@ -68,14 +68,20 @@ public:
                        scene.triangles.size(), "triangle", "triangles");
     }
 
-    Decision tree() const {
-        const std::string count = plural(scene.triangles.size(), "triangle", "triangles");
+    Decision listed() const {
         if (lanes < TINY_LANES)
-            return {true, fmt::format("{} at {}", count, plural(std::size_t(lanes), "lane", "lanes"))};
-        if (scene.tiny_triangles.size() < scene.triangles.size())
-            return {true, fmt::format("{}, and a tree pays from {} triangles or {} distinct vertices on", count,
-                                      OPAL_TINY_TRIANGLES + 1, OPAL_TINY_VERTICES + 1)};
-        return {false, fmt::format("{}: testing each against all lanes is faster", count)};
+            return {false, fmt::format("pays from {} lanes on", TINY_LANES)};
+        if (scene.tiny_triangles.empty())
+            return {false, "no triangle is large enough to be tested outside the tree"};
+        return {true, fmt::format("{} of {}: tested against all lanes at once", scene.tiny_triangles.size(),
+                                  plural(scene.triangles.size(), "triangle", "triangles"))};
+    }
+
+    Decision tree() const {
+        const std::size_t inside = scene.triangles.size() - scene.tiny_triangles.size();
+        if (inside == 0 && !scene.triangles.empty())
+            return {false, "all triangles are listed"};
+        return {true, plural(inside, "triangle", "triangles")};
     }
 
     Decision wide_filter() const {

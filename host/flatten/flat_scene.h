@@ -38,8 +38,8 @@ struct FlatScene {
     std::vector<TriangleBlock> blocks;
     std::vector<Triangle> triangles;
     std::vector<float> normals;             // 3 each
-    std::vector<float> tiny_vertices;       // 3 each; empty with a tree
-    std::vector<TinyTriangle> tiny_triangles;
+    std::vector<float> tiny_vertices;       // 3 each, distinct
+    std::vector<TinyTriangle> tiny_triangles; // listed outside the tree
     std::vector<MeshRecord> meshes;
     std::vector<BsdfRecord> bsdfs;          // equal records are shared
     std::vector<EmitterRecord> emitters;
@@ -50,7 +50,7 @@ struct FlatScene {
     double bvh_seconds = 0;
 };
 
-// lanes: the width that the kernel will have; decides whether a tiny scene does without a tree.
+// lanes: the width that the kernel will have; decides whether triangles are listed beside the tree.
 FlatScene flatten(const SceneDescription &scene, int lanes);
 
 } // namespace opal

@@ -1,6 +1,7 @@
 #include "flatten/emitters.h"
 #include "flatten/features.h"
 #include "flatten/geometry.h"
+#include "flatten/listed.h"
 
 #include <algorithm>
 #include <chrono>
@@ -75,41 +76,13 @@ void gather_bsdfs(const SceneDescription &description, FlatScene &scene) {
     }
 }
 
-// Fills the tables of distinct vertices, if there are few enough.
-bool gather_tiny(const TriangleSoup &soup, FlatScene &scene) {
-    if (soup.corners.size() > OPAL_TINY_TRIANGLES)
-        return false;
-    std::map<std::array<float, 3>, uint> known;
-    std::vector<uint> numbers; // of each corner's vertex
-    for (const auto &corners : soup.corners)
-        for (uint vertex : corners) {
-            numbers.push_back(known.try_emplace(soup.vertices[vertex], uint(known.size())).first->second);
-            if (known.size() > OPAL_TINY_VERTICES)
-                return false;
-        }
-    scene.tiny_vertices.resize(3 * known.size());
-    for (const auto &[position, number] : known)
-        std::copy(position.begin(), position.end(), &scene.tiny_vertices[3 * number]);
-    for (uint id = 0; id < soup.corners.size(); id++)
-        scene.tiny_triangles.push_back(
-            {{numbers[3 * id], numbers[3 * id + 1], numbers[3 * id + 2]}, id}); // as pack_blocks has them
-    scene.settings.tiny_triangle_count = uint(scene.tiny_triangles.size());
-    scene.settings.tiny_vertex_count = uint(known.size());
-    return true;
-}
-
-void build_acceleration(const TriangleSoup &soup, bool may_be_tiny, FlatScene &scene) {
-    if (may_be_tiny && gather_tiny(soup, scene)) {
-        scene.blocks = pack_blocks(soup);
-        return;
-    }
+void build_acceleration(const TriangleSoup &soup, bool with_listed, FlatScene &scene) {
     const auto start = std::chrono::steady_clock::now();
-    Bvh bvh = build_bvh(soup);
+    const std::vector<uint> listed = with_listed ? choose_listed(soup) : std::vector<uint>();
+    if (listed.size() < soup.corners.size() || listed.empty())
+        plant_tree(soup, listed, scene);
+    list_triangles(soup, listed, scene);
     scene.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    scene.sah_cost = sah_cost(bvh);
-    scene.nodes = std::move(bvh.nodes);
-    scene.blocks = std::move(bvh.blocks);
-    scene.settings.root = bvh.root;
 }
 
 } // namespace
