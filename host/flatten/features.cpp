@@ -79,8 +79,8 @@ public:
 
     Decision tree() const {
         const std::size_t inside = scene.triangles.size() - scene.tiny_triangles.size();
-        if (inside == 0 && !scene.triangles.empty())
-            return {false, "all triangles are listed"};
+        if (inside == 0 && lanes >= TINY_LANES)
+            return {false, scene.triangles.empty() ? "there are no triangles" : "all triangles are listed"};
         return {true, plural(inside, "triangle", "triangles")};
     }
 

@@ -237,3 +237,38 @@ TEST_CASE("the scenes that people have", "[flatten]") {
     }
     CHECK(scenes > 0);
 }
+
+TEST_CASE("the largest triangles are listed beside the tree, each triangle is in one of both", "[flatten]") {
+    // A floor of two triangles under a grid of small ones.
+    TriangleMesh grid;
+    for (int i = 0; i < 400; i++) {
+        const double x = i % 20, y = double(i / 20), z = 1 + (i % 7) * 0.1;
+        const unsigned first = unsigned(grid.positions.size());
+        grid.positions.insert(grid.positions.end(), {{x, y, z}, {x + 0.5, y, z}, {x, y + 0.5, z}});
+        grid.triangles.push_back({{{first, OPAL_NONE}, {first + 1, OPAL_NONE}, {first + 2, OPAL_NONE}}});
+    }
+    const SceneDescription description =
+        scene_of({diffuse(grid), diffuse(Parallelogram{{-5, -5, 0}, {40, 0, 0}, {0, 40, 0}})});
+    const FlatScene scene = flatten(description, 8);
+    CHECK(scene.features["listed"]);
+    CHECK(scene.features["tree"]);
+    REQUIRE(scene.tiny_triangles.size() == 2);
+    CHECK(scene.tiny_vertices.size() == 3 * 4);
+    for (const TinyTriangle &listed : scene.tiny_triangles) {
+        const uint id = scene.blocks[listed.slot / 8].id[listed.slot % 8];
+        CHECK(scene.triangles[id].mesh == 1);
+        for (int corner = 0; corner < 3; corner++)
+            for (int axis = 0; axis < 3; axis++)
+                CHECK(scene.tiny_vertices[3 * listed.corner[corner] + axis] ==
+                      scene.blocks[listed.slot / 8].vertex[corner][axis][listed.slot % 8]);
+    }
+    std::vector<int> seen(scene.triangles.size());
+    for (const TriangleBlock &block : scene.blocks)
+        for (uint id : block.id)
+            if (id != OPAL_NONE)
+                seen[id]++;
+    CHECK(std::all_of(seen.begin(), seen.end(), [](int times) { return times == 1; }));
+    // The tree's box is that of the grid.
+    CHECK(scene.settings.root_lo[2] == float((1 - scene.center.z) * scene.scale));
+    CHECK(flatten(description, 1).tiny_triangles.empty());
+}

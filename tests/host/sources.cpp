@@ -63,6 +63,7 @@ TEST_CASE("The program text defines width, precision, every feature and every ax
     CHECK_THAT(text, Catch::StartsWith("#define LANES 8\n#define OPAL_DOUBLE 0\n#define OPAL_FAST 1\n"
                                        "#define OPAL_HAS_tree 1\n#define OPAL_HAS_wide_filter 0\n"
                                        "#define OPAL_AXIS_integrator -1\n#define OPAL_AXIS_lighting 2\n"));
-    CHECK_THAT(text, Catch::EndsWith("#define OPAL_AXIS_sampler -1\n#line 1 \"cl/kernels/k.cl\"\nkernel void k() {}\n"));
+    CHECK_THAT(text, Catch::Contains("#define OPAL_AXIS_sampler -1\n"));
+    CHECK_THAT(text, Catch::Contains("\n#line 1 \"cl/kernels/k.cl\"\nkernel void k() {}\n"));
     CHECK(program_text(features, options, sources) == text);
 }
