@@ -12,7 +12,7 @@ typedef struct {
     mask discrete;   // wo has no density: no light sampling can find it
 } BsdfSample;
 
-BsdfSample bsdf_sample_of(v3 wo, v3 weight, real eta, mask discrete) {
+static BsdfSample bsdf_sample_of(v3 wo, v3 weight, real eta, mask discrete) {
     BsdfSample s = {wo, weight, eta, discrete};
     return s;
 }
@@ -36,10 +36,10 @@ enum { BSDF_KINDS = 0 OPAL_BSDFS(COUNT_BSDF) }; // that this kernel has
         } \
     }
 
-uints bsdf_kind(const Scene *scene, uints id) { return GATHER(uints, scene->bsdfs, id, .kind); }
+static uints bsdf_kind(const Scene *scene, uints id) { return GATHER(uints, scene->bsdfs, id, .kind); }
 
 // f(wi, wo) of the materials `id`, and the density of bsdf_sample.
-v3 bsdf_eval(const Scene *scene, uints id, v3 wi, v3 wo, mask live, real *pdf) {
+static v3 bsdf_eval(const Scene *scene, uints id, v3 wi, v3 wo, mask live, real *pdf) {
     v3 f = v3_all((real)(0));
     *pdf = 0;
     uints kind = bsdf_kind(scene, id);
@@ -49,7 +49,7 @@ v3 bsdf_eval(const Scene *scene, uints id, v3 wi, v3 wo, mask live, real *pdf) {
     return f;
 }
 
-real bsdf_pdf(const Scene *scene, uints id, v3 wi, v3 wo, mask live) {
+static real bsdf_pdf(const Scene *scene, uints id, v3 wi, v3 wo, mask live) {
     real pdf = 0;
     uints kind = bsdf_kind(scene, id);
 #define PDF(name) pdf = m ? name##_pdf(b, wi, wo) : pdf;
@@ -58,7 +58,7 @@ real bsdf_pdf(const Scene *scene, uints id, v3 wi, v3 wo, mask live) {
     return pdf;
 }
 
-BsdfSample bsdf_sample(const Scene *scene, uints id, v3 wi, v2 u, real lobe, mask live) {
+static BsdfSample bsdf_sample(const Scene *scene, uints id, v3 wi, v2 u, real lobe, mask live) {
     BsdfSample s = bsdf_sample_of(wi, v3_all((real)(0)), (real)(1), NO_LANES);
     uints kind = bsdf_kind(scene, id);
 #define SAMPLE(name) \
@@ -71,7 +71,7 @@ BsdfSample bsdf_sample(const Scene *scene, uints id, v3 wi, v2 u, real lobe, mas
 }
 
 // Materials that light sampling cannot serve: discrete ones.
-mask bsdf_is_discrete(const Scene *scene, uints id) {
+static mask bsdf_is_discrete(const Scene *scene, uints id) {
     uints kind = bsdf_kind(scene, id);
     mask discrete = NO_LANES;
     if (OPAL_HAS_bsdf_mirror) discrete = discrete | to_mask(kind == BSDF_mirror);

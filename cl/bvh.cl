@@ -9,7 +9,7 @@ typedef struct {
     real shear_x, shear_y, scale_z; // d[kx] / d[kz], d[ky] / d[kz], 1 / d[kz], with kx = kz + 1, ky = kz + 2 mod 3
 } Shear;
 
-Shear shear_of(v3 d) {
+static Shear shear_of(v3 d) {
     v3 a = v3_abs(d);
     Shear s;
     s.x = a.x > a.y & a.x > a.z;
@@ -21,7 +21,7 @@ Shear shear_of(v3 d) {
 }
 
 // 1/d, finite also for zeros, whose sign is kept: a box test then never meets 0 * inf.
-real safe_inverse(real d) { return 1 / (fabs(d) < R(1e-30) ? copysign((real)(R(1e-30)), d) : d); }
+static real safe_inverse(real d) { return 1 / (fabs(d) < R(1e-30) ? copysign((real)(R(1e-30)), d) : d); }
 
 // All lanes' rays, laid out so that a loop can read one lane after the other.
 typedef struct {
@@ -29,7 +29,7 @@ typedef struct {
     int kz[LANES], live[LANES];
 } LaneRays;
 
-void store_rays(LaneRays *rays, Ray ray, mask live) {
+static void store_rays(LaneRays *rays, Ray ray, mask live) {
     Shear s = shear_of(ray.d);
     STORE(ray.o.x, rays->o[0]); STORE(ray.o.y, rays->o[1]); STORE(ray.o.z, rays->o[2]);
     STORE(safe_inverse(ray.d.x), rays->inverse[0]);
@@ -42,7 +42,7 @@ void store_rays(LaneRays *rays, Ray ray, mask live) {
     STORE(to_ints(live), rays->live);
 }
 
-LaneRay load_ray(const LaneRays *rays, int lane) {
+static LaneRay load_ray(const LaneRays *rays, int lane) {
     LaneRay r;
     for (int axis = 0; axis < 3; axis++) {
         r.o[axis] = rays->o[axis][lane];
@@ -58,7 +58,7 @@ LaneRay load_ray(const LaneRays *rays, int lane) {
 
 // The children whose boxes the ray meets, a byte each, and where it enters them. (plane - o) / d loses nothing that
 // matters, and the far side is widened by its error bound, so that no box misses a triangle inside it (Ize 2013).
-ulong intersect_children(global const BvhNode *node, const LaneRay *ray, real8 *entry) {
+static ulong intersect_children(global const BvhNode *node, const LaneRay *ray, real8 *entry) {
     global const float *lo = node->lo[0], *hi = node->hi[0];
     int x = ray->inverse[0] < 0, y = ray->inverse[1] < 0, z = ray->inverse[2] < 0;
     real8 near_x = (load8(x ? hi : lo) - ray->o[0]) * ray->inverse[0];
@@ -73,7 +73,7 @@ ulong intersect_children(global const BvhNode *node, const LaneRay *ray, real8 *
 }
 
 // Nearest hit of one ray before its tmax; leaves the outputs as they are where there is none.
-void walk_closest(const Scene *scene, LaneRay ray, real1 *t_out, real1 *u_out, real1 *v_out, uint *slot_out) {
+static void walk_closest(const Scene *scene, LaneRay ray, real1 *t_out, real1 *u_out, real1 *v_out, uint *slot_out) {
     uint stack[STACK_SIZE];
     real1 entries[STACK_SIZE];
     int top = 0;
@@ -127,7 +127,7 @@ void walk_closest(const Scene *scene, LaneRay ray, real1 *t_out, real1 *u_out, r
 }
 
 // Does anything lie between tmin and tmax of one ray?
-int walk_any(const Scene *scene, LaneRay ray) {
+static int walk_any(const Scene *scene, LaneRay ray) {
     uint stack[STACK_SIZE];
     int top = 0;
     uint child = scene->settings->root;
@@ -147,7 +147,7 @@ int walk_any(const Scene *scene, LaneRay ray) {
 // Listed triangles: the vertices as all lanes see them, moved and sheared once for all triangles that share them.
 typedef struct { real x[OPAL_TINY_VERTICES], y[OPAL_TINY_VERTICES], z[OPAL_TINY_VERTICES]; } TinyView;
 
-void view_vertices(const Scene *scene, Ray ray, TinyView *view) {
+static void view_vertices(const Scene *scene, Ray ray, TinyView *view) {
     Shear s = shear_of(ray.d);
     // x = v[kx] - shear_x v[kz] - (the same of o), with the axes of each lane as vectors; likewise y, and z = v[kz] - o[kz].
     real zero = 0, one = 1;
@@ -166,7 +166,7 @@ void view_vertices(const Scene *scene, Ray ray, TinyView *view) {
 // Triangle i in that view: inside, and the signed sums that give t = distance / determinant, u = b / determinant, ...
 typedef struct { real b, c, determinant, distance; mask inside; } TinyTest;
 
-TinyTest tiny_test(const TinyView *view, const uint *corner) {
+static TinyTest tiny_test(const TinyView *view, const uint *corner) {
     uint i = corner[0], j = corner[1], k = corner[2];
     real a = lanes_edge(view->x[k], view->y[k], view->x[j], view->y[j]);
     real b = lanes_edge(view->x[i], view->y[i], view->x[k], view->y[k]);
@@ -179,7 +179,7 @@ TinyTest tiny_test(const TinyView *view, const uint *corner) {
     return test;
 }
 
-Hit tiny_closest(const Scene *scene, Ray ray, mask live) {
+static Hit tiny_closest(const Scene *scene, Ray ray, mask live) {
     TinyView view;
     view_vertices(scene, ray, &view);
     real distance = ray.tmax, determinant = 1, b = 0, c = 0;
@@ -200,7 +200,7 @@ Hit tiny_closest(const Scene *scene, Ray ray, mask live) {
     return hit;
 }
 
-mask tiny_any(const Scene *scene, Ray ray, mask live) {
+static mask tiny_any(const Scene *scene, Ray ray, mask live) {
     TinyView view;
     view_vertices(scene, ray, &view);
     mask blocked = !live;
@@ -213,7 +213,7 @@ mask tiny_any(const Scene *scene, Ray ray, mask live) {
 }
 
 // The lanes whose ray meets the tree's box, as intersect_children has it.
-mask meets_tree(global const Settings *settings, Ray ray) {
+static mask meets_tree(global const Settings *settings, Ray ray) {
     v3 inverse = v3_of(safe_inverse(ray.d.x), safe_inverse(ray.d.y), safe_inverse(ray.d.z));
     v3 a = v3_mul(v3_sub(v3_from(settings->root_lo), ray.o), inverse), b = v3_mul(v3_sub(v3_from(settings->root_hi), ray.o), inverse);
     real enter = real_max(real_max(real_min(a.x, b.x), real_min(a.y, b.y)), real_max(real_min(a.z, b.z), ray.tmin));
@@ -222,7 +222,7 @@ mask meets_tree(global const Settings *settings, Ray ray) {
 }
 
 // The nearest hit of each live lane.
-Hit closest_hit(const Scene *scene, Ray ray, mask live) {
+static Hit closest_hit(const Scene *scene, Ray ray, mask live) {
     Hit hit = {ray.tmax, (real)(0), (real)(0), (uints)(OPAL_NONE)};
     if (OPAL_HAS_listed) hit = tiny_closest(scene, ray, live);
     if (!OPAL_HAS_tree) return hit;
@@ -241,7 +241,7 @@ Hit closest_hit(const Scene *scene, Ray ray, mask live) {
 }
 
 // The live lanes whose way is blocked between tmin and tmax.
-mask any_hit(const Scene *scene, Ray ray, mask live) {
+static mask any_hit(const Scene *scene, Ray ray, mask live) {
     mask listed = NO_LANES;
     if (OPAL_HAS_listed) listed = tiny_any(scene, ray, live);
     if (!OPAL_HAS_tree) return listed;

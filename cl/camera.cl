@@ -3,10 +3,10 @@
 // The film position (sx, sy) in [0, 1]^2 has its origin top-left; camera space looks along +z with +x left in the image.
 
 // Place of a sample within its pixel, in [0, 1)^2.
-v2 film_offset(const Scene *scene, Sampler s) { return draw(scene, s, (uints)(DIM_FILM)); }
+static v2 film_offset(const Scene *scene, Sampler s) { return draw(scene, s, (uints)(DIM_FILM)); }
 
 // The ray of a sample at `offset` in pixel (x, y): unit direction, clipped by the planar near and far distances.
-Ray camera_ray(const Scene *scene, uints x, uints y, v2 offset) {
+static Ray camera_ray(const Scene *scene, uints x, uints y, v2 offset) {
     global const Settings *settings = scene->settings;
     real sx = (to_real(x) + offset.x) / (real1)settings->width;
     real sy = (to_real(y) + offset.y) / (real1)settings->height;
@@ -18,7 +18,7 @@ Ray camera_ray(const Scene *scene, uints x, uints y, v2 offset) {
 }
 
 // Weight of a sample at distance (x, y) from a pixel's centre, in pixels (SCENE_FORMAT section 3).
-real filter_1d(global const Settings *settings, real x) {
+static real filter_1d(global const Settings *settings, real x) {
     real a = fabs(x), radius = settings->filter_radius;
     real w = 1;
     if (settings->filter == FILTER_tent) w = real_max(1 - a / radius, (real)(0));

@@ -13,7 +13,7 @@ typedef struct {
 enum { EMITTER_KINDS = 0 OPAL_EMITTERS(COUNT_EMITTER) }; // that this kernel has
 
 // Row floor(u n) of n, u in [0, 1): u n may round up to n.
-uints alias_row(real u, uints n) {
+static uints alias_row(real u, uints n) {
     uints row = to_uints(u * to_real(n));
     return min(row, n - 1u);
 }
@@ -23,18 +23,18 @@ uints alias_row(real u, uints n) {
 #include "emitters/point.cl"
 
 // An emitter a lane, by the alias table of --emitter-choice.
-uints emitter_choose(const Scene *scene, v2 u) {
+static uints emitter_choose(const Scene *scene, v2 u) {
     if (!OPAL_HAS_many_emitters) return (uints)(0);
     uints row = alias_row(u.x, (uints)(scene->settings->emitter_count));
     mask kept = u.y < GATHER(real, scene->emitters, row, .accept);
     return uints_pick(kept, row, GATHER(uints, scene->emitters, row, .other));
 }
 
-real emitter_probability(const Scene *scene, uints id) {
+static real emitter_probability(const Scene *scene, uints id) {
     return OPAL_HAS_many_emitters ? GATHER(real, scene->emitters, id, .probability) : (real)(1);
 }
 
-EmitterSample emitter_sample(const Scene *scene, uints id, v2 point, v2 triangle, mask live) {
+static EmitterSample emitter_sample(const Scene *scene, uints id, v2 point, v2 triangle, mask live) {
     EmitterSample s;
     uints kind = GATHER(uints, scene->emitters, id, .kind);
     s.p = s.normal = s.facing = v3_all((real)(0));
@@ -54,11 +54,11 @@ EmitterSample emitter_sample(const Scene *scene, uints id, v2 point, v2 triangle
     return s;
 }
 
-v3 emitter_radiance(const Scene *scene, uints id) { return GATHER_V3(scene->emitters, id, .radiance); }
+static v3 emitter_radiance(const Scene *scene, uints id) { return GATHER_V3(scene->emitters, id, .radiance); }
 
 // Density over area with which light sampling finds a point on an area light, all choices included, given the area of
 // the triangle it lies on.
-real emitter_area_pdf(const Scene *scene, uints id, real triangle_area) {
+static real emitter_area_pdf(const Scene *scene, uints id, real triangle_area) {
     real pdf = 1 / GATHER(real, scene->emitters, id, .area);
     if (OPAL_HAS_emitter_mesh && CHOSEN(scene, triangle_choice, uniform)) {
         mask mesh = to_mask(GATHER(uints, scene->emitters, id, .kind) == EMITTER_mesh);

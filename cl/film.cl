@@ -14,7 +14,7 @@
 
 typedef struct { real hi, lo; } Sum;
 
-Sum sum_add(Sum s, real x, mask valid) {
+static Sum sum_add(Sum s, real x, mask valid) {
 #pragma OPENCL FP_CONTRACT OFF
     x = valid ? x : (real)(0);
     real hi = s.hi + x;
@@ -29,13 +29,13 @@ Sum sum_add(Sum s, real x, mask valid) {
 // The planes of LANES pixels from `first` on; lanes past the end of the image repeat its last pixel and are not stored.
 typedef struct { uints pixel; uint first, pixels; } FilmPlace;
 
-Sum film_load(global const float *film, FilmPlace at, uint plane, uint low) {
+static Sum film_load(global const float *film, FilmPlace at, uint plane, uint low) {
     global const float *hi = film + (ulong)plane * at.pixels, *lo = film + (ulong)(plane + low) * at.pixels;
     Sum s = {GATHER(real, hi, at.pixel, ), GATHER(real, lo, at.pixel, )};
     return s;
 }
 
-void film_store(global float *film, FilmPlace at, uint plane, uint low, Sum s) {
+static void film_store(global float *film, FilmPlace at, uint plane, uint low, Sum s) {
     real1 hi[LANES], lo[LANES];
     STORE(s.hi, hi);
     STORE(s.lo, lo);
@@ -48,7 +48,7 @@ void film_store(global float *film, FilmPlace at, uint plane, uint low, Sum s) {
 #define float_bits(x) CAT(as_, WIDE(uint))(CAT(convert_, WIDE(float))(x))
 
 // Told by exponent bits, which no compiler option voids.
-mask is_finite(v3 c) {
+static mask is_finite(v3 c) {
     uints all = (uints)(0x7f800000u);
     uints x = float_bits(c.x), y = float_bits(c.y), z = float_bits(c.z);
     return to_mask((x & all) != all) & to_mask((y & all) != all) & to_mask((z & all) != all);

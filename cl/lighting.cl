@@ -11,18 +11,18 @@ typedef struct {
 } Path;
 
 // The pair `dimension` of the path's present segment.
-v2 path_draw(const Scene *scene, const Path *path, uint dimension) {
+static v2 path_draw(const Scene *scene, const Path *path, uint dimension) {
     return draw(scene, path->sampler, 1u + (path->depth - 1u) * (uint)DIMS_A_SEGMENT + dimension);
 }
 
 // Weight of a sample whose own density is 1 against another of density `ratio` (Veach 1997, eq. 9.8 and 9.10). As a ratio it
 // survives densities that are 0 or overflow.
-real mis_weight(const Scene *scene, real ratio) {
+static real mis_weight(const Scene *scene, real ratio) {
     return 1 / (1 + (CHOSEN(scene, mis, power) ? ratio * ratio : ratio));
 }
 
 // Radiance that the surface emits towards the viewer, weighted by how else it could have been found.
-v3 emitted(const Scene *scene, const Path *path, Surface s, Hit hit, mask found) {
+static v3 emitted(const Scene *scene, const Path *path, Surface s, Hit hit, mask found) {
     v3 none = v3_all((real)(0));
     if (EMITTER_KINDS == 0) return none;
     mask shining = found & to_mask(s.emitter != OPAL_NONE) & (s.wi.z > 0);
@@ -40,7 +40,7 @@ v3 emitted(const Scene *scene, const Path *path, Surface s, Hit hit, mask found)
 }
 
 // Direct light by one point on one emitter, weighted against BSDF sampling where both are used.
-v3 sampled_light(const Scene *scene, const Path *path, Surface s, mask live) {
+static v3 sampled_light(const Scene *scene, const Path *path, Surface s, mask live) {
     v3 none = v3_all((real)(0));
     if (EMITTER_KINDS == 0 || !ANY(live)) return none;
     uints id = emitter_choose(scene, path_draw(scene, path, DIM_EMITTER));
@@ -74,7 +74,7 @@ v3 sampled_light(const Scene *scene, const Path *path, Surface s, mask live) {
 }
 
 // The path's next segment, drawn by the BSDF. Returns the lanes whose path carries anything on.
-mask scatter(const Scene *scene, Path *path, Surface s, mask live) {
+static mask scatter(const Scene *scene, Path *path, Surface s, mask live) {
     v2 lobe = path_draw(scene, path, DIM_LOBE);
     BsdfSample sample = bsdf_sample(scene, s.bsdf, s.wi, path_draw(scene, path, DIM_BSDF), lobe.x, live);
     live = live & (v3_largest(sample.weight) > 0);
@@ -96,7 +96,7 @@ mask scatter(const Scene *scene, Path *path, Surface s, mask live) {
 #define ROULETTE_MOST R(0.9999)
 
 // Ends paths at random and makes up for them in those that go on. It looks at the pair that scatter drew its lobe from.
-mask roulette(const Scene *scene, Path *path, mask live, real u) {
+static mask roulette(const Scene *scene, Path *path, mask live, real u) {
     if (CHOSEN(scene, rr, off)) return live;
     real survival = scene->settings->rr_prob;
     if (!CHOSEN(scene, rr, fixed)) {

@@ -5,14 +5,14 @@
 #define INV_FOUR_PI R(0.07957747154594766788)
 #define FAR R(1e30) // farther than anything: scenes are flattened to about [-1, 1]; finite, so that fast math may have it
 
-real square(real x) { return x * x; }
-real real_min(real a, real b) { return a < b ? a : b; } // NaN in a is dropped, NaN in b stays: minps, unlike fmin
-real real_max(real a, real b) { return a > b ? a : b; }
-real safe_sqrt(real x) { return sqrt(real_max(x, (real)(0))); }
+static real square(real x) { return x * x; }
+static real real_min(real a, real b) { return a < b ? a : b; } // NaN in a is dropped, NaN in b stays: minps, unlike fmin
+static real real_max(real a, real b) { return a > b ? a : b; }
+static real safe_sqrt(real x) { return sqrt(real_max(x, (real)(0))); }
 
 // sin and cos of 2 pi u for any u of moderate size, without the library's argument reduction: u is reduced exactly to an
 // eighth of a turn, where the Taylor series ends below half an ulp (x^11/11! < 2^-28; in double x^19/19! < 2^-57).
-v2 cos_sin_2pi(real u) {
+static v2 cos_sin_2pi(real u) {
     real quarter = rint(4 * u);
     real x = (u - R(0.25) * quarter) * R(6.28318530717958647693);
     real x2 = x * x;
@@ -39,18 +39,18 @@ v2 cos_sin_2pi(real u) {
 // An orthonormal frame around the unit vector n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
 typedef struct { v3 s, t, n; } Frame;
 
-Frame frame_of(v3 n) {
+static Frame frame_of(v3 n) {
     real sign = copysign((real)(1), n.z);
     real a = -1 / (sign + n.z), b = n.x * n.y * a;
     Frame f = {v3_of(1 + sign * n.x * n.x * a, sign * b, -sign * n.x), v3_of(b, sign + n.y * n.y * a, -n.y), n};
     return f;
 }
-v3 to_local(Frame f, v3 v) { return v3_of(v3_dot(v, f.s), v3_dot(v, f.t), v3_dot(v, f.n)); }
-v3 to_world(Frame f, v3 v) { return v3_mad(f.s, v.x, v3_mad(f.t, v.y, v3_scale(f.n, v.z))); }
+static v3 to_local(Frame f, v3 v) { return v3_of(v3_dot(v, f.s), v3_dot(v, f.t), v3_dot(v, f.n)); }
+static v3 to_world(Frame f, v3 v) { return v3_mad(f.s, v.x, v3_mad(f.t, v.y, v3_scale(f.n, v.z))); }
 
-real v3_largest(v3 a) { return real_max(a.x, real_max(a.y, a.z)); }
-real sin2_theta(v3 w) { return mul_add(w.x, w.x, w.y * w.y); } // not 1 - cos^2, which loses all digits near the pole
-v3 reflect_z(v3 w) { return v3_of(-w.x, -w.y, w.z); }
+static real v3_largest(v3 a) { return real_max(a.x, real_max(a.y, a.z)); }
+static real sin2_theta(v3 w) { return mul_add(w.x, w.x, w.y * w.y); } // not 1 - cos^2, which loses all digits near the pole
+static v3 reflect_z(v3 w) { return v3_of(-w.x, -w.y, w.z); }
 
 // Luminance of linear RGB (ITU-R BT.709).
-real luminance(v3 c) { return R(0.212671) * c.x + R(0.715160) * c.y + R(0.072169) * c.z; }
+static real luminance(v3 c) { return R(0.212671) * c.x + R(0.715160) * c.y + R(0.072169) * c.z; }

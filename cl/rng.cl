@@ -19,7 +19,7 @@ typedef struct {
 typedef struct { uints x, y, z; } u3;
 
 // pcg3d and pcg4d of Jarzynski and Olano 2020, "Hash Functions for GPU Rendering".
-u3 pcg3d(uints x, uints y, uints z) {
+static u3 pcg3d(uints x, uints y, uints z) {
     x = x * 1664525u + 1013904223u; y = y * 1664525u + 1013904223u; z = z * 1664525u + 1013904223u;
     x += y * z; y += z * x; z += x * y;
     x ^= x >> 16; y ^= y >> 16; z ^= z >> 16;
@@ -27,7 +27,7 @@ u3 pcg3d(uints x, uints y, uints z) {
     u3 r = {x, y, z};
     return r;
 }
-void pcg4d(uints *x, uints *y, uints *z, uints *w) {
+static void pcg4d(uints *x, uints *y, uints *z, uints *w) {
     *x = *x * 1664525u + 1013904223u; *y = *y * 1664525u + 1013904223u;
     *z = *z * 1664525u + 1013904223u; *w = *w * 1664525u + 1013904223u;
     *x += *y * *w; *y += *z * *x; *z += *x * *y; *w += *y * *z;
@@ -35,7 +35,7 @@ void pcg4d(uints *x, uints *y, uints *z, uints *w) {
     *x += *y * *w; *y += *z * *x; *z += *x * *y; *w += *y * *z;
 }
 
-Sampler sampler_start(uints pixel, uints sample, uint seed) {
+static Sampler sampler_start(uints pixel, uints sample, uint seed) {
     uints x = pixel, y = sample, z = (uints)(seed), w = (uints)(0x9e3779b9u);
     pcg4d(&x, &y, &z, &w);
     Sampler s = {pixel, sample, x, y};
@@ -43,9 +43,9 @@ Sampler sampler_start(uints pixel, uints sample, uint seed) {
 }
 
 // The upper 24 bits as a number in [0, 1).
-real unit_real(uints bits) { return to_real(bits >> 8) * R(5.9604644775390625e-08); }
+static real unit_real(uints bits) { return to_real(bits >> 8) * R(5.9604644775390625e-08); }
 
-uints reverse_bits(uints x) {
+static uints reverse_bits(uints x) {
     x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
     x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
     x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
@@ -54,7 +54,7 @@ uints reverse_bits(uints x) {
 }
 
 // An Owen scramble of the bits of x, highest first, as a hash (Laine and Karras 2011, improved by Vegdahl 2021).
-uints owen_scramble(uints x, uints seed) {
+static uints owen_scramble(uints x, uints seed) {
     x = reverse_bits(x);
     x ^= x * 0x3d20adeau;
     x += seed;
@@ -66,7 +66,7 @@ uints owen_scramble(uints x, uints seed) {
 
 // The second Sobol dimension of index i: its generator is Pascal's triangle mod 2, a sum over subsets of bit positions,
 // hence five butterflies on the reversed bits.
-uints sobol_second(uints i) {
+static uints sobol_second(uints i) {
     uints x = reverse_bits(i);
     x ^= (x & 0x55555555u) << 1;
     x ^= (x & 0x33333333u) << 2;
@@ -77,14 +77,14 @@ uints sobol_second(uints i) {
 }
 
 // A pair of Owen-scrambled Sobol points, padded: each dimension shuffles the order of its points (Burley 2020).
-v2 sobol_pair(Sampler s, uints dimension, uint seed) {
+static v2 sobol_pair(Sampler s, uints dimension, uint seed) {
     u3 h = pcg3d(s.pixel, dimension, (uints)(seed));
     uints i = owen_scramble(s.sample, h.x);
     return v2_of(unit_real(owen_scramble(reverse_bits(i), h.y)), unit_real(owen_scramble(sobol_second(i), h.z)));
 }
 
 // Place of i in a random permutation of 0 ... n-1 (Kensler 2013, "Correlated Multi-Jittered Sampling", listing 3).
-uints permute(uints i, uint n, uints p) {
+static uints permute(uints i, uint n, uints p) {
     uint w = n - 1;
     w |= w >> 1; w |= w >> 2; w |= w >> 4; w |= w >> 8; w |= w >> 16;
     uints r = i;
@@ -101,7 +101,7 @@ uints permute(uints i, uint n, uints p) {
 }
 
 // One jittered stratum of a grid of at least `spp` cells a sample, in an order of its own for each dimension.
-v2 stratified_pair(Sampler s, uints dimension, uint spp, uint seed) {
+static v2 stratified_pair(Sampler s, uints dimension, uint spp, uint seed) {
     uint columns = max(1u, (uint)sqrt((float)spp)), rows = (spp + columns - 1) / columns, cells = columns * rows;
     uints round = s.sample / cells; // past spp the strata start over
     u3 h = pcg3d(s.pixel, dimension, (uints)(seed) ^ (round * 0x85ebca6bu));

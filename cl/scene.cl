@@ -44,7 +44,7 @@ typedef struct {
 } Hit;
 
 // A pair of numbers of a dimension, by the chosen sampler.
-v2 draw(const Scene *scene, Sampler s, uints dimension) {
+static v2 draw(const Scene *scene, Sampler s, uints dimension) {
     if (CHOSEN(scene, sampler, sobol)) return sobol_pair(s, dimension, scene->settings->seed);
     if (CHOSEN(scene, sampler, stratified)) return stratified_pair(s, dimension, scene->settings->spp, scene->settings->seed);
     u3 h = pcg3d(s.key0, s.key1, dimension);

@@ -10,19 +10,19 @@ typedef struct {
 } Surface;
 
 // Corner `corner` of the triangles in `slot`.
-v3 triangle_vertex(const Scene *scene, uints slot, uint corner) {
+static v3 triangle_vertex(const Scene *scene, uints slot, uint corner) {
     global const float *first = scene->blocks->vertex[corner][0];
     uints word = (slot >> 3) * (uint)(sizeof(TriangleBlock) / 4) + (slot & 7u);
     return v3_of(GATHER(real, first, word, ), GATHER(real, (first + 8), word, ), GATHER(real, (first + 16), word, ));
 }
 
-v3 vertex_normal(const Scene *scene, uints index) {
+static v3 vertex_normal(const Scene *scene, uints index) {
     uints word = index * 3u;
     return v3_of(GATHER(real, scene->normals, word, ), GATHER(real, (scene->normals + 1), word, ), GATHER(real, (scene->normals + 2), word, ));
 }
 
 // The shading normal at barycentric weights u, v: interpolated where all corners have one, else the geometric.
-v3 shading_normal(const Scene *scene, uints triangle, real u, real v, v3 geometric) {
+static v3 shading_normal(const Scene *scene, uints triangle, real u, real v, v3 geometric) {
     if (!OPAL_HAS_shading_normals) return geometric;
     uints n0 = GATHER(uints, scene->triangles, triangle, .normal[0]);
     uints n1 = GATHER(uints, scene->triangles, triangle, .normal[1]);
@@ -39,13 +39,13 @@ v3 shading_normal(const Scene *scene, uints triangle, real u, real v, v3 geometr
 
 // A bound of how far, along the normal, a point computed on this triangle may lie from it, and how far above it a ray must
 // start to be seen on the right side by triangle.cl: both are some roundings of the largest coordinate involved.
-real surface_margin(v3 p0, v3 p1, v3 p2) {
+static real surface_margin(v3 p0, v3 p1, v3 p2) {
     real largest = real_max(v3_largest(v3_abs(p0)), real_max(v3_largest(v3_abs(p1)), v3_largest(v3_abs(p2))));
     return 24 * EPSILON * largest;
 }
 
 // `found`: the lanes that hit something; the others get the values of slot 0.
-Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask found) {
+static Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask found) {
     uints slot = uints_pick(found, hit.slot, (uints)(0));
     v3 p0 = triangle_vertex(scene, slot, 0), p1 = triangle_vertex(scene, slot, 1), p2 = triangle_vertex(scene, slot, 2);
     v3 e1 = v3_sub(p1, p0), e2 = v3_sub(p2, p0);
@@ -68,7 +68,7 @@ Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask found) {
 }
 
 // A ray from the surface in direction d, started far enough above it not to meet it again.
-v3 leave_surface(Surface s, v3 d) {
+static v3 leave_surface(Surface s, v3 d) {
     real side = copysign(s.margin, v3_dot(s.normal, d));
     return v3_mad(s.normal, side, s.p);
 }

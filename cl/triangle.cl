@@ -5,14 +5,14 @@
 // provided the two products are rounded alike: hence no contraction to fma in edge(). A zero counts as inside for both
 // neighbours, so that no ray passes between two triangles that share an edge.
 
-real8 edge(real8 ax, real8 ay, real8 bx, real8 by) {
+static real8 edge(real8 ax, real8 ay, real8 bx, real8 by) {
 #pragma OPENCL FP_CONTRACT OFF
     real8 p = ax * by;
     real8 q = ay * bx;
     return p - q;
 }
 
-real lanes_edge(real ax, real ay, real bx, real by) {
+static real lanes_edge(real ax, real ay, real bx, real by) {
 #pragma OPENCL FP_CONTRACT OFF
     real p = ax * by;
     real q = ay * bx;
@@ -35,7 +35,7 @@ typedef struct {
     ulong hits; // bytes_of those that are hit between tmin and tmax
 } BlockTest;
 
-BlockTest intersect_block(global const TriangleBlock *block, const LaneRay *ray) {
+static BlockTest intersect_block(global const TriangleBlock *block, const LaneRay *ray) {
     global const float *x = block->vertex[0][0] + 8 * ray->kx;
     global const float *y = block->vertex[0][0] + 8 * ray->ky;
     global const float *z = block->vertex[0][0] + 8 * ray->kz;

@@ -2,60 +2,60 @@
 // A density is per area (tent, disk) or per solid angle (sphere, hemisphere, Beckmann, Phong lobe); 0 outside the domain.
 
 // Tent on [-1, 1]^2: (1 - |x|)(1 - |y|), by inversion of each half.
-real tent_1d(real u) { return u < R(0.5) ? sqrt(2 * u) - 1 : 1 - sqrt(2 - 2 * u); }
-v2 square_to_tent(v2 u) { return v2_of(tent_1d(u.x), tent_1d(u.y)); }
-real square_to_tent_pdf(v2 p) { return real_max(1 - fabs(p.x), (real)(0)) * real_max(1 - fabs(p.y), (real)(0)); }
+static real tent_1d(real u) { return u < R(0.5) ? sqrt(2 * u) - 1 : 1 - sqrt(2 - 2 * u); }
+static v2 square_to_tent(v2 u) { return v2_of(tent_1d(u.x), tent_1d(u.y)); }
+static real square_to_tent_pdf(v2 p) { return real_max(1 - fabs(p.x), (real)(0)) * real_max(1 - fabs(p.y), (real)(0)); }
 
 // Uniform on the unit disk, polar.
-v2 square_to_uniform_disk(v2 u) {
+static v2 square_to_uniform_disk(v2 u) {
     v2 cs = cos_sin_2pi(u.y);
     real r = sqrt(u.x);
     return v2_of(r * cs.x, r * cs.y);
 }
-real square_to_uniform_disk_pdf(v2 p) { return mul_add(p.x, p.x, p.y * p.y) <= 1 ? (real)(INV_PI) : (real)(0); }
+static real square_to_uniform_disk_pdf(v2 p) { return mul_add(p.x, p.x, p.y * p.y) <= 1 ? (real)(INV_PI) : (real)(0); }
 
 // A direction from its height z and azimuth 2 pi v; sine = sqrt(1 - z^2), given because 1 - z^2 loses digits near z = 1.
-v3 direction_of(real z, real sine, real v) {
+static v3 direction_of(real z, real sine, real v) {
     v2 cs = cos_sin_2pi(v);
     return v3_of(sine * cs.x, sine * cs.y, z);
 }
 
 // Uniform on the sphere: z = 1 - 2u, 1 - z^2 = 4u(1 - u).
-v3 square_to_uniform_sphere(v2 u) { return direction_of(1 - 2 * u.x, 2 * sqrt(u.x * (1 - u.x)), u.y); }
-real square_to_uniform_sphere_pdf(v3 w) { return (real)(INV_FOUR_PI) + 0 * w.z; }
+static v3 square_to_uniform_sphere(v2 u) { return direction_of(1 - 2 * u.x, 2 * sqrt(u.x * (1 - u.x)), u.y); }
+static real square_to_uniform_sphere_pdf(v3 w) { return (real)(INV_FOUR_PI) + 0 * w.z; }
 
 // Uniform on the hemisphere z >= 0: z = 1 - u, 1 - z^2 = u(2 - u).
-v3 square_to_uniform_hemisphere(v2 u) { return direction_of(1 - u.x, sqrt(u.x * (2 - u.x)), u.y); }
-real square_to_uniform_hemisphere_pdf(v3 w) { return w.z >= 0 ? (real)(INV_TWO_PI) : (real)(0); }
+static v3 square_to_uniform_hemisphere(v2 u) { return direction_of(1 - u.x, sqrt(u.x * (2 - u.x)), u.y); }
+static real square_to_uniform_hemisphere_pdf(v3 w) { return w.z >= 0 ? (real)(INV_TWO_PI) : (real)(0); }
 
 // cos/pi on the hemisphere: the uniform disk lifted (Malley). z = sqrt(1 - u) is never 0, as u < 1.
-v3 square_to_cosine_hemisphere(v2 u) { return direction_of(sqrt(1 - u.x), sqrt(u.x), u.y); }
-real square_to_cosine_hemisphere_pdf(v3 w) { return real_max(w.z, (real)(0)) * INV_PI; }
+static v3 square_to_cosine_hemisphere(v2 u) { return direction_of(sqrt(1 - u.x), sqrt(u.x), u.y); }
+static real square_to_cosine_hemisphere_pdf(v3 w) { return real_max(w.z, (real)(0)) * INV_PI; }
 
 // Beckmann half vectors: D = exp(-tan^2/alpha^2) / (pi alpha^2 cos^3), which integrates to 1 over solid angle
 // (Walter et al. 2007, eq. 25 and 28, with one cosine in the density). tan^2 = -alpha^2 ln(1 - u).
-v3 square_to_beckmann(v2 u, real alpha) {
+static v3 square_to_beckmann(v2 u, real alpha) {
     real tan2 = -alpha * alpha * log1p(-u.x);
     real z = rsqrt(1 + tan2);
     return direction_of(z, sqrt(tan2) * z, u.y);
 }
-real square_to_beckmann_pdf(v3 h, real alpha) {
+static real square_to_beckmann_pdf(v3 h, real alpha) {
     real tan = sqrt(sin2_theta(h)) / (alpha * h.z); // divided by alpha before squaring: alpha^2 may underflow
     real density = exp(-tan * tan) * INV_PI / (square(alpha * h.z) * h.z);
     return h.z > 0 ? density : (real)(0);
 }
 
 // Phong lobe around z: (n + 1)/(2 pi) cos^n. z = u^(1/(n+1)); 1 - z^2 by expm1, which keeps all digits for large n.
-v3 square_to_phong_lobe(v2 u, real n) {
+static v3 square_to_phong_lobe(v2 u, real n) {
     real log_z = log(u.x) / (n + 1); // -inf at u = 0: z = 0, sine = 1
     return direction_of(exp(log_z), sqrt(-expm1(2 * log_z)), u.y);
 }
 // cos^n by log1p of 1 - cos = sin^2/(1 + cos), as cos itself rounds away what a large n magnifies.
-real phong_lobe_power(v3 w, real n) {
+static real phong_lobe_power(v3 w, real n) {
     real s2 = sin2_theta(w);
     real z = real_max(w.z, (real)(0));
     real log_z = R(0.5) * log1p(-real_min(s2, (real)(1)));
     real power = s2 < R(0.5) ? exp(n * log_z) : pow(z, n);
     return w.z > 0 ? power : (real)(0);
 }
-real square_to_phong_lobe_pdf(v3 w, real n) { return (n + 1) * INV_TWO_PI * phong_lobe_power(w, n); }
+static real square_to_phong_lobe_pdf(v3 w, real n) { return (n + 1) * INV_TWO_PI * phong_lobe_power(w, n); }

@@ -6,16 +6,16 @@
 // (1/eta)^2, eta = index over index, far side over near side (Veach 1997, section 5.2); eta is reported with the sample.
 typedef struct { real int_ior, ext_ior; } dielectric_bsdf;
 
-dielectric_bsdf dielectric_at(const Scene *scene, uints id) {
+static dielectric_bsdf dielectric_at(const Scene *scene, uints id) {
     dielectric_bsdf b = {GATHER(real, scene->bsdfs, id, .u.dielectric.int_ior), GATHER(real, scene->bsdfs, id, .u.dielectric.ext_ior)};
     return b;
 }
 
-v3 dielectric_eval(dielectric_bsdf b, v3 wi, v3 wo) { return v3_all((real)(0)); }
+static v3 dielectric_eval(dielectric_bsdf b, v3 wi, v3 wo) { return v3_all((real)(0)); }
 
-real dielectric_pdf(dielectric_bsdf b, v3 wi, v3 wo) { return (real)(0); }
+static real dielectric_pdf(dielectric_bsdf b, v3 wi, v3 wo) { return (real)(0); }
 
-BsdfSample dielectric_sample(dielectric_bsdf b, v3 wi, v2 u, real lobe) {
+static BsdfSample dielectric_sample(dielectric_bsdf b, v3 wi, v2 u, real lobe) {
     mask outside = wi.z > 0;
     real near = outside ? b.ext_ior : b.int_ior, far = outside ? b.int_ior : b.ext_ior;
     real eta = far / near, sin2 = sin2_theta(wi);

@@ -4,7 +4,7 @@
 //   use_cosine  draw directions in proportion to their cosine, else uniformly (false); the image is the same, its noise is not
 typedef struct { v3 albedo; mask use_cosine; } diffuse_bsdf;
 
-diffuse_bsdf diffuse_at(const Scene *scene, uints id) {
+static diffuse_bsdf diffuse_at(const Scene *scene, uints id) {
     diffuse_bsdf b = {GATHER_V3(scene->bsdfs, id, .u.diffuse.albedo),
                       to_mask(GATHER(uints, scene->bsdfs, id, .u.diffuse.use_cosine) != 0)};
     if (CHOSEN(scene, hemisphere, cosine)) b.use_cosine = ALL_LANES;
@@ -12,18 +12,18 @@ diffuse_bsdf diffuse_at(const Scene *scene, uints id) {
     return b;
 }
 
-v3 diffuse_eval(diffuse_bsdf b, v3 wi, v3 wo) {
+static v3 diffuse_eval(diffuse_bsdf b, v3 wi, v3 wo) {
     mask above = wi.z > 0 & wo.z > 0;
     return v3_scale(b.albedo, above ? (real)(INV_PI) : (real)(0));
 }
 
-real diffuse_pdf(diffuse_bsdf b, v3 wi, v3 wo) {
+static real diffuse_pdf(diffuse_bsdf b, v3 wi, v3 wo) {
     mask above = wi.z > 0 & wo.z > 0;
     real density = b.use_cosine ? square_to_cosine_hemisphere_pdf(wo) : square_to_uniform_hemisphere_pdf(wo);
     return above ? density : (real)(0);
 }
 
-BsdfSample diffuse_sample(diffuse_bsdf b, v3 wi, v2 u, real lobe) {
+static BsdfSample diffuse_sample(diffuse_bsdf b, v3 wi, v2 u, real lobe) {
     v3 wo = v3_pick(b.use_cosine, square_to_cosine_hemisphere(u), square_to_uniform_hemisphere(u));
     real weight = b.use_cosine ? (real)(1) : 2 * wo.z; // the pis cancelled on paper
     return bsdf_sample_of(wo, v3_scale(b.albedo, wi.z > 0 ? weight : (real)(0)), (real)(1), NO_LANES);

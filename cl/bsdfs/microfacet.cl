@@ -8,7 +8,7 @@
 // G Smith's rational approximation for Beckmann (Walter et al. 2007, section 5.2).
 typedef struct { real alpha, int_ior, ext_ior, ks; v3 kd; } microfacet_bsdf;
 
-microfacet_bsdf microfacet_at(const Scene *scene, uints id) {
+static microfacet_bsdf microfacet_at(const Scene *scene, uints id) {
     microfacet_bsdf b = {GATHER(real, scene->bsdfs, id, .u.microfacet.alpha), GATHER(real, scene->bsdfs, id, .u.microfacet.int_ior),
                          GATHER(real, scene->bsdfs, id, .u.microfacet.ext_ior), GATHER(real, scene->bsdfs, id, .u.microfacet.ks),
                          GATHER_V3(scene->bsdfs, id, .u.microfacet.kd)};
@@ -16,7 +16,7 @@ microfacet_bsdf microfacet_at(const Scene *scene, uints id) {
 }
 
 // Shadowing of one direction w by facets of normal h.
-real microfacet_g1(v3 w, v3 h, real alpha) {
+static real microfacet_g1(v3 w, v3 h, real alpha) {
     real b = w.z / (alpha * sqrt(sin2_theta(w))); // +inf at the pole, where nothing is shadowed
     real rational = (R(3.535) * b + R(2.181) * b * b) / (1 + R(2.276) * b + R(2.577) * b * b);
     real g = b < R(1.6) ? rational : (real)(1);
@@ -24,14 +24,14 @@ real microfacet_g1(v3 w, v3 h, real alpha) {
 }
 
 // What eval and sample share: the coat without D, F G / (4 cos_i cos_o cos_h) ks cos_o.
-real microfacet_coat(microfacet_bsdf b, v3 wi, v3 wo, v3 h) {
+static real microfacet_coat(microfacet_bsdf b, v3 wi, v3 wo, v3 h) {
     real cosine = v3_dot(wi, h);
     real sin2 = 1 - square(cosine);
     real f = fresnel_dielectric(fabs(cosine), real_max(sin2, (real)(0)), b.ext_ior, b.int_ior);
     return b.ks * f * microfacet_g1(wi, h, b.alpha) * microfacet_g1(wo, h, b.alpha) / (4 * wi.z * h.z);
 }
 
-v3 microfacet_eval(microfacet_bsdf b, v3 wi, v3 wo) {
+static v3 microfacet_eval(microfacet_bsdf b, v3 wi, v3 wo) {
     mask above = wi.z > 0 & wo.z > 0;
     v3 h = v3_normalize(v3_add(wi, wo));
     real coat = microfacet_coat(b, wi, wo, h) * square_to_beckmann_pdf(h, b.alpha) / wo.z;
@@ -40,7 +40,7 @@ v3 microfacet_eval(microfacet_bsdf b, v3 wi, v3 wo) {
 }
 
 // ks D / (4 h.wo) + (1 - ks) cos_o / pi; before the loss of what is drawn below the surface.
-real microfacet_pdf(microfacet_bsdf b, v3 wi, v3 wo) {
+static real microfacet_pdf(microfacet_bsdf b, v3 wi, v3 wo) {
     v3 h = v3_normalize(v3_add(wi, wo));
     real coat = square_to_beckmann_pdf(h, b.alpha) / (4 * fabs(v3_dot(h, wo)));
     real density = b.ks * coat + (1 - b.ks) * square_to_cosine_hemisphere_pdf(wo);
@@ -48,7 +48,7 @@ real microfacet_pdf(microfacet_bsdf b, v3 wi, v3 wo) {
 }
 
 // The weight keeps the h that was drawn: one recomputed from wo is off by an ulp of wo, which a small alpha magnifies.
-BsdfSample microfacet_sample(microfacet_bsdf b, v3 wi, v2 u, real lobe) {
+static BsdfSample microfacet_sample(microfacet_bsdf b, v3 wi, v2 u, real lobe) {
     mask coated = lobe < b.ks;
     v3 facet = square_to_beckmann(u, b.alpha);
     v3 mirrored = v3_sub(v3_scale(facet, 2 * v3_dot(wi, facet)), wi);

@@ -6,18 +6,18 @@
 // f = kd pd / pi + ks (1 - pd) (n + 2)/(2 pi) cos^n a, with a between wo and the mirrored wi.
 typedef struct { v3 kd, ks; real pd, n; } phong_bsdf;
 
-phong_bsdf phong_at(const Scene *scene, uints id) {
+static phong_bsdf phong_at(const Scene *scene, uints id) {
     phong_bsdf b = {GATHER_V3(scene->bsdfs, id, .u.phong.kd), GATHER_V3(scene->bsdfs, id, .u.phong.ks),
                     GATHER(real, scene->bsdfs, id, .u.phong.pd), GATHER(real, scene->bsdfs, id, .u.phong.n)};
     return b;
 }
 
 // Density of the lobe alone at wo.
-real phong_lobe(phong_bsdf b, v3 wi, v3 wo) {
+static real phong_lobe(phong_bsdf b, v3 wi, v3 wo) {
     return square_to_phong_lobe_pdf(to_local(frame_of(reflect_z(wi)), wo), b.n);
 }
 
-v3 phong_eval(phong_bsdf b, v3 wi, v3 wo) {
+static v3 phong_eval(phong_bsdf b, v3 wi, v3 wo) {
     mask above = wi.z > 0 & wo.z > 0;
     real specular = (1 - b.pd) * (b.n + 2) / (b.n + 1) * phong_lobe(b, wi, wo);
     v3 f = v3_add(v3_scale(b.kd, b.pd * INV_PI), v3_scale(b.ks, specular));
@@ -25,12 +25,12 @@ v3 phong_eval(phong_bsdf b, v3 wi, v3 wo) {
 }
 
 // The mixture that sample draws from, also below the surface, where the sample is kept with weight 0.
-real phong_pdf(phong_bsdf b, v3 wi, v3 wo) {
+static real phong_pdf(phong_bsdf b, v3 wi, v3 wo) {
     real density = b.pd * square_to_cosine_hemisphere_pdf(wo) + (1 - b.pd) * phong_lobe(b, wi, wo);
     return wi.z > 0 ? density : (real)(0);
 }
 
-BsdfSample phong_sample(phong_bsdf b, v3 wi, v2 u, real lobe) {
+static BsdfSample phong_sample(phong_bsdf b, v3 wi, v2 u, real lobe) {
     mask diffuse = lobe < b.pd;
     Frame mirrored = frame_of(reflect_z(wi));
     v3 wo = v3_pick(diffuse, square_to_cosine_hemisphere(u), to_world(mirrored, square_to_phong_lobe(u, b.n)));

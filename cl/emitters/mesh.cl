@@ -1,7 +1,7 @@
 // mesh: a triangle mesh that emits on the side of its shading normals. A triangle is chosen by area or uniformly
 // (--triangle-choice), then a point on it uniformly; the density is the joint one.
 //   <mesh type="obj"> ... <emitter type="area"> <color name="radiance" value="40 40 40"/> </emitter> </mesh>
-EmitterSample emitter_mesh_sample(const Scene *scene, uints id, v2 point, v2 triangle) {
+static EmitterSample emitter_mesh_sample(const Scene *scene, uints id, v2 point, v2 triangle) {
     uints first = GATHER(uints, scene->emitters, id, .first), count = GATHER(uints, scene->emitters, id, .count);
     uints row = first + alias_row(triangle.x, count);
     mask kept = triangle.y < GATHER(real, scene->light_triangles, row, .accept);

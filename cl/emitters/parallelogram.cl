@@ -1,6 +1,6 @@
 // parallelogram: an area light o + x u + y v that emits on the side of u x v, sampled uniformly over its area.
 //   <mesh type="parallelogram"> ... <emitter type="area"> <color name="radiance" value="40 40 40"/> </emitter> </mesh>
-EmitterSample emitter_parallelogram_sample(const Scene *scene, uints id, v2 point, v2 triangle) {
+static EmitterSample emitter_parallelogram_sample(const Scene *scene, uints id, v2 point, v2 triangle) {
     v3 o = GATHER_V3(scene->emitters, id, .origin);
     v3 u = GATHER_V3(scene->emitters, id, .u), v = GATHER_V3(scene->emitters, id, .v);
     v3 n = v3_cross(u, v);

@@ -1,6 +1,6 @@
 // ao: ambient occlusion: the cosine-weighted share of the hemisphere, unbounded, that nothing blocks.
 //   cosine_sampling   draw directions in proportion to their cosine (--hemisphere cosine), else uniformly
-mask ao_step(const Scene *scene, Path *path, Hit hit, mask live) {
+static mask ao_step(const Scene *scene, Path *path, Hit hit, mask live) {
     mask found = live & to_mask(hit.slot != OPAL_NONE);
     Surface s = surface_at(scene, path->ray, hit, found);
     v2 u = path_draw(scene, path, DIM_BSDF);

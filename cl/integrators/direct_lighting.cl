@@ -2,7 +2,7 @@
 //   surface_sampling   by points on the lights (--lighting emitter), else by BSDF sampling (bsdf)
 //   mis_sampling       by one of both with probability 1/2 and the balance heuristic (--lighting mis --mis one-sample);
 //                      balance and power take one sample of each
-mask direct_lighting_step(const Scene *scene, Path *path, Hit hit, mask live) {
+static mask direct_lighting_step(const Scene *scene, Path *path, Hit hit, mask live) {
     mask found = live & to_mask(hit.slot != OPAL_NONE);
     if (!ANY(found)) return found;
     Surface s = surface_at(scene, path->ray, hit, found);

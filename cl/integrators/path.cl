@@ -1,6 +1,6 @@
 // path: path tracing (Kajiya 1986) with BSDF sampling, next-event estimation or both with MIS (--lighting), and Russian roulette.
 //   nee, mis, rr, rr_prob of path_tracer_recursive; path_mats, path_ems, path_mis name the three kinds of lighting
-mask path_step(const Scene *scene, Path *path, Hit hit, mask live) {
+static mask path_step(const Scene *scene, Path *path, Hit hit, mask live) {
     mask found = live & to_mask(hit.slot != OPAL_NONE);
     if (!ANY(found)) return found;
     Surface s = surface_at(scene, path->ray, hit, found);

@@ -1,7 +1,7 @@
 // simple: one point light and no materials: energy / (4 pi^2) max(0, cos) / distance^2 where the light is seen.
 //   position   of the light
 //   energy     W, linear RGB
-mask simple_step(const Scene *scene, Path *path, Hit hit, mask live) {
+static mask simple_step(const Scene *scene, Path *path, Hit hit, mask live) {
     mask found = live & to_mask(hit.slot != OPAL_NONE);
     Surface s = surface_at(scene, path->ray, hit, found);
     v3 light = v3_from(scene->settings->light_position);

@@ -2,7 +2,7 @@
 // probability 0.95 (Nori's assignment 4; Whitted 1980).
 #define WHITTED_SURVIVAL R(0.95)
 
-mask whitted_step(const Scene *scene, Path *path, Hit hit, mask live) {
+static mask whitted_step(const Scene *scene, Path *path, Hit hit, mask live) {
     mask found = live & to_mask(hit.slot != OPAL_NONE);
     if (!ANY(found)) return found;
     Surface s = surface_at(scene, path->ray, hit, found);

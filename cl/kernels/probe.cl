@@ -16,33 +16,33 @@
 #include "emitter.cl"
 #include "kernels/probe_list.h"
 
-real get(global const float *planes, uint plane, uint stride, uint base) {
+static real get(global const float *planes, uint plane, uint stride, uint base) {
     real1 lanes[LANES];
     for (uint lane = 0; lane < LANES; lane++) lanes[lane] = planes[plane * stride + base + lane];
     return LOAD(real, lanes);
 }
-v2 get_v2(global const float *planes, uint plane, uint stride, uint base) {
+static v2 get_v2(global const float *planes, uint plane, uint stride, uint base) {
     return v2_of(get(planes, plane, stride, base), get(planes, plane + 1, stride, base));
 }
-v3 get_v3(global const float *planes, uint plane, uint stride, uint base) {
+static v3 get_v3(global const float *planes, uint plane, uint stride, uint base) {
     return v3_of(get(planes, plane, stride, base), get(planes, plane + 1, stride, base), get(planes, plane + 2, stride, base));
 }
-void put(global float *planes, uint plane, uint stride, uint base, real value) {
+static void put(global float *planes, uint plane, uint stride, uint base, real value) {
     real1 lanes[LANES];
     STORE(value, lanes);
     for (uint lane = 0; lane < LANES; lane++) planes[plane * stride + base + lane] = (float)lanes[lane];
 }
-void put_v3(global float *planes, uint plane, uint stride, uint base, v3 value) {
+static void put_v3(global float *planes, uint plane, uint stride, uint base, v3 value) {
     put(planes, plane, stride, base, value.x);
     put(planes, plane + 1, stride, base, value.y);
     put(planes, plane + 2, stride, base, value.z);
 }
-void put_uints(global float *planes, uint plane, uint stride, uint base, uints value) {
+static void put_uints(global float *planes, uint plane, uint stride, uint base, uints value) {
     uint lanes[LANES];
     STORE(value, lanes);
     for (uint lane = 0; lane < LANES; lane++) planes[plane * stride + base + lane] = as_float(lanes[lane]);
 }
-uints lane_indices(uint base) {
+static uints lane_indices(uint base) {
     uint lanes[LANES];
     for (uint lane = 0; lane < LANES; lane++) lanes[lane] = base + lane;
     return LOAD(uints, lanes);

@@ -22,7 +22,7 @@
 #include "integrators/path.cl"
 
 // One step of a path: its ray has hit `hit`. Returns the lanes that go on with a new ray.
-mask integrator_step(const Scene *scene, Path *path, Hit hit, mask live) {
+static mask integrator_step(const Scene *scene, Path *path, Hit hit, mask live) {
 #define STEP(axis, name, help) if (CHOSEN(scene, integrator, name)) return name##_step(scene, path, hit, live);
     OPAL_CHOICES_integrator(STEP)
     return NO_LANES;
@@ -37,7 +37,7 @@ typedef struct {
 } Queue;
 
 // Hands each ended lane the next sample of the queue, where there is one. Returns the lanes that carry a path.
-mask refill(const Scene *scene, Queue *queue, Path *path, mask live) {
+static mask refill(const Scene *scene, Queue *queue, Path *path, mask live) {
     if (queue->y >= queue->bottom || !ANY(!live)) return live;
     uint width = scene->settings->width;
     int carries[LANES], fresh[LANES];
@@ -85,7 +85,7 @@ mask refill(const Scene *scene, Queue *queue, Path *path, mask live) {
 }
 
 // Puts the radiance of the paths that ended into their slots.
-void retire(global float *slots, const Path *path, mask ended) {
+static void retire(global float *slots, const Path *path, mask ended) {
     if (!ANY(ended)) return;
     int done[LANES];
     uint place[LANES];
@@ -106,7 +106,7 @@ void retire(global float *slots, const Path *path, mask ended) {
 
 // The samples of work-item `item` of a pass: chunk item % chunks, of chunk_samples samples a pixel, of tile item / chunks. None
 // for items past the end: a launch always has the same shape, so the last one reaches over it.
-Queue queue_of(global const Settings *settings, uint item, uint items, uint tile_width, uint tile_height, uint chunks,
+static Queue queue_of(global const Settings *settings, uint item, uint items, uint tile_width, uint tile_height, uint chunks,
                uint chunk_samples, uint pass_first, uint pass_samples) {
     uint width = settings->width, height = settings->height;
     uint columns = (width + tile_width - 1) / tile_width;
@@ -152,14 +152,14 @@ kernel void clear(global const Settings *settings, global float *slots, uint fir
 }
 
 // One sample's colour of each lane's pixel.
-v3 slot_color(global const float *slots, uints pixel, uint s, uint pass_samples) {
+static v3 slot_color(global const float *slots, uints pixel, uint s, uint pass_samples) {
     global const float *sample = slots + 3 * s;
     uints word = pixel * (3 * pass_samples);
     return v3_of(GATHER(real, sample, word, ), GATHER(real, (sample + 1), word, ), GATHER(real, (sample + 2), word, ));
 }
 
 // Counts samples that are neither finite nor empty, and notes the pixel and index of the first few.
-void note_invalid(global const float *slots, FilmPlace at, mask valid, uint s, uint pass_first, uint pass_samples, volatile global uint *invalid) {
+static void note_invalid(global const float *slots, FilmPlace at, mask valid, uint s, uint pass_first, uint pass_samples, volatile global uint *invalid) {
     int ok[LANES];
     STORE(to_ints(valid), ok);
     for (uint lane = 0; lane < LANES && at.first + lane < at.pixels; lane++) {
@@ -174,7 +174,7 @@ void note_invalid(global const float *slots, FilmPlace at, mask valid, uint s, u
 }
 
 // The pixels' own samples, for the box filter and for statistics.
-void gather_own(FilmPlace at, global const float *slots, global float *film, global uint *counts, volatile global uint *invalid,
+static void gather_own(FilmPlace at, global const float *slots, global float *film, global uint *counts, volatile global uint *invalid,
                 uint pass_first, uint pass_samples) {
     Sum sums[3], squares[4];
     for (uint c = 0; c < 3; c++) sums[c] = film_load(film, at, FILM_SUM + c, 3);
@@ -201,7 +201,7 @@ void gather_own(FilmPlace at, global const float *slots, global float *film, glo
 }
 
 // The samples of the pixels around, wherever in those they fell, by the filter's weight.
-void gather_around(FilmPlace at, global const Settings *settings, global const float *slots, global float *film, uint pass_first,
+static void gather_around(FilmPlace at, global const Settings *settings, global const float *slots, global float *film, uint pass_first,
                    uint pass_samples) {
     Scene scene = {settings, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
     uint width = settings->width, height = settings->height;
