@@ -1,0 +1,10 @@
+// Functions with a formula in double.
+#include "support/device.h"
+#include "support/kernel_checks.h"
+#include "support/seeds.h"
+
+using namespace opal;
+using namespace opal::test;
+
+TEST_CASE("Reflectance and refraction follow Fresnel and Snell", "[optics]") { require_all_pass(check_refraction(Sources::embedded(), 0)); }
+TEST_CASE("Sine and cosine of a turn", "[optics]") { require_all_pass(check_trigonometry(Sources::embedded(), test_seed(130))); }
