@@ -3,11 +3,14 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "base/signals.h"
+#include "base/units.h"
 #include "commands/commands.h"
 #include "commands/options.h"
 #include "flatten/flat_scene.h"
 #include "render/renderer.h"
 #include "render/report.h"
+#include "render/stop_rules.h"
+#include "stats/special.h"
 
 #include <fmt/format.h>
 
@@ -15,9 +18,11 @@ namespace opal {
 
 namespace {
 
+constexpr unsigned most_samples = 1u << 31; // where a stop rule alone decides
+
 struct Options {
     SceneOptions scene;
-    std::string device, out, json, layers;
+    std::string device, out, json, layers, time, target_error;
     unsigned spp = 0, width = 0, height = 0, seed = 0;
     bool no_png = false, quiet = false;
 };
@@ -56,6 +61,46 @@ void tell_what_runs(const SceneDescription &scene, const FlatScene &flat, const 
                      lanes == 1 ? "" : "s", scene.strategy.math == MathMode::fast ? "fast" : "precise"));
 }
 
+constexpr double confidence = 0.95;
+
+StopRule stop_rule(const Options &o) {
+    StopRule rule;
+    if (!o.time.empty())
+        rule.seconds = parse_seconds(o.time);
+    if (!o.target_error.empty())
+        rule.relative_error = parse_fraction(o.target_error);
+    return rule;
+}
+
+// What was asked for and what was reached; the interval holds the true mean luminance with that confidence.
+nlohmann::json stop_json(const StopRule &rule, const Stopped &stopped, const Film &film, double seconds) {
+    const FilmStatistics s = statistics_of(film);
+    const double half = stats::normal_quantile(0.5 + confidence / 2) * s.stderr_luminance;
+    const double reached = s.mean_luminance > 0 ? s.stderr_luminance / s.mean_luminance : 0;
+    nlohmann::json j = {{"rule", rule.seconds > 0 ? "time" : "target-error"},
+                        {"target", rule.seconds > 0 ? rule.seconds : rule.relative_error},
+                        {"reached", rule.seconds > 0 ? seconds : reached},
+                        {"relative_error", reached},
+                        {"confidence", confidence},
+                        {"mean_luminance_interval", {s.mean_luminance - half, s.mean_luminance + half}}};
+    if (rule.relative_error > 0)
+        j.update({{"met", s.mean_luminance > 0 && reached <= rule.relative_error}, {"pilot_spp", stopped.pilot_spp}, {"pilot_seconds", stopped.pilot_seconds}});
+    return j;
+}
+
+void tell_stop(const nlohmann::json &stop, double spp, double seconds) {
+    std::string words = fmt::format("stopped after {:.4g} samples a pixel and {:.4g} s of kernel time: relative standard error {:.3g} % of "
+                                    "the mean luminance, which is in [{:.6g}, {:.6g}] with confidence {:g} %",
+                                    spp, seconds, 100 * stop["relative_error"].get<double>(), stop["mean_luminance_interval"][0].get<double>(),
+                                    stop["mean_luminance_interval"][1].get<double>(), 100 * confidence);
+    if (stop.contains("pilot_spp"))
+        words += fmt::format("; a pilot of {} samples a pixel ({:.3g} s) decided and is not in the image",
+                             stop["pilot_spp"].get<unsigned>(), stop["pilot_seconds"].get<double>());
+    info("error   " + words);
+    if (!stop.value("met", true))
+        warn(fmt::format("--target-error {:g} %: reached {:.3g} %", 100 * stop["target"].get<double>(), 100 * stop["reached"].get<double>()));
+}
+
 void tell_result(const nlohmann::json &report, const Film &film) {
     info(fmt::format("result  mean luminance {:.6g} +- {:.2g}, {:.4g} M paths/s over {:.3g} s of kernel time",
                      report["mean_luminance"].get<double>(), report["stderr_luminance"].get<double>(),
@@ -72,6 +117,7 @@ int run(const Options &o, const CLI::App &app) {
     set_quiet(o.quiet);
     const bool variance = o.layers == "variance";
     RenderSeconds seconds;
+    const StopRule rule = stop_rule(o);
 
     Stopwatch load;
     SceneDescription scene = load_scene(o.scene);
@@ -105,11 +151,17 @@ int run(const Options &o, const CLI::App &app) {
 
     watch_interrupts();
     const double pixels = double(scene.camera.width) * scene.camera.height;
-    bool complete;
+    Stopped stopped;
     {
-        Progress progress("render", scene.spp * pixels);
-        complete = renderer.render(scene.spp, [&](double samples, double) {
-            progress.update(samples * pixels);
+        const unsigned most = rule.given() && !app.count("--spp") ? most_samples : scene.spp;
+        std::optional<Progress> progress; // none where nobody knows yet how much there is to do
+        if (rule.seconds > 0)
+            progress.emplace("render", rule.seconds, "s");
+        else if (!rule.given())
+            progress.emplace("render", most * pixels);
+        stopped = render_until(renderer, rule, o.seed, most, [&](double samples, double kernel_seconds) {
+            if (progress)
+                progress->update(rule.seconds > 0 ? kernel_seconds : samples * pixels);
             return !interrupted();
         });
     }
@@ -117,21 +169,26 @@ int run(const Options &o, const CLI::App &app) {
 
     const Film film = renderer.film();
     Image image = image_of(film, variance);
-    add_metadata(image, report_json(scene, pick.info, lanes, o.seed, film, seconds), command_line());
+    nlohmann::json report = report_json(scene, pick.info, lanes, o.seed, film, seconds);
+    if (rule.given())
+        report["stop"] = stop_json(rule, stopped, film, seconds.render);
+    add_metadata(image, report, command_line());
     Stopwatch write;
     write_exr(image, exr);
     if (!o.no_png)
         write_png(image, png);
     seconds.write = write.seconds();
 
-    const nlohmann::json report = report_json(scene, pick.info, lanes, o.seed, film, seconds);
+    report["seconds"]["write"] = seconds.write;
     if (!o.json.empty())
         write_safely(o.json, report.dump(2) + "\n");
     tell_result(report, film);
+    if (rule.given())
+        tell_stop(report["stop"], report["spp"].get<double>(), seconds.render);
     info(fmt::format("wrote   {}{}", exr.string(), o.no_png ? "" : " and " + png.string()));
-    if (complete)
+    if (stopped.complete)
         return 0;
-    warn(fmt::format("interrupted: the image holds {:.4g} of {} samples a pixel", report["spp"].get<double>(), scene.spp));
+    warn(fmt::format("interrupted: the image holds {:.4g} of {} samples a pixel", report["spp"].get<double>(), stopped.spp));
     return exit_interrupted;
 }
 
@@ -144,6 +201,12 @@ RunCommand setup_render(CLI::App &app) {
     app.add_option("-o,--output", o->out, "EXR file; the PNG goes beside it (default: the scene's name, in the current folder)");
     app.add_flag("--no-png", o->no_png, "Write no PNG");
     app.add_option("--spp", o->spp, "Samples per pixel (default: the scene's sampleCount)")->check(CLI::Range(1u, 0xffffffffu));
+    CLI::Option *time = app.add_option("--time", o->time, "Stop after this much kernel time (30s, 2min); --spp is then the most")->type_name("TIME");
+    app.add_option("--target-error", o->target_error,
+                   "Stop when the relative standard error of the image's mean luminance is below this (1%)\n"
+                   "  A pilot of other samples decides how many, so that the image stays unbiased")
+        ->type_name("ERROR")
+        ->excludes(time);
     app.add_option("--width", o->width, "Pixels (default: the scene's; one of both keeps its aspect)")->check(CLI::Range(1, 65535));
     app.add_option("--height", o->height, "Pixels (default: the scene's)")->check(CLI::Range(1, 65535));
     app.add_option("--seed", o->seed, "Of the random numbers; the same seed gives the same image")->capture_default_str();

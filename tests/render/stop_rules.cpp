@@ -1,0 +1,93 @@
+// `render --time` and `--target-error`: what they reach, that they stay unbiased, and that the stated interval covers.
+#include "render/stop_rules.h"
+
+#include "base/units.h"
+#include "stats/hypothesis.h"
+#include "support/device.h"
+#include "support/error_of.h"
+#include "support/plain_scenes.h"
+#include "support/seeds.h"
+
+using namespace opal;
+using namespace opal::test;
+
+namespace {
+
+// A floor under a lamp far smaller than it: BSDF samples rarely find it, so that the noise is skewed.
+SceneDescription noisy_scene() {
+    SceneDescription scene = scene_of({diffuse(Parallelogram{{-2, -2, 5}, {4, 0, 0}, {0, 4, 0}}, 0.8f),
+                                       light(Parallelogram{{-0.6, -0.6, 4}, {0, 1.2, 0}, {1.2, 0, 0}}, {3, 3, 3})});
+    scene.camera.width = 8;
+    scene.camera.height = 8;
+    scene.strategy[AXIS_lighting] = CHOICE_lighting_bsdf;
+    scene.strategy.max_depth = 2;
+    return scene;
+}
+
+struct Rendering {
+    FlatScene flat = flatten(noisy_scene(), 1);
+    RenderOptions options{.build = {.lanes = 1}};
+    Renderer renderer{device(), flat, options};
+    FilmStatistics until(const StopRule &rule, unsigned seed, unsigned most = 1u << 20, Stopped *stopped = nullptr) {
+        renderer.restart(seed);
+        const Stopped s = render_until(renderer, rule, seed, most, {});
+        if (stopped)
+            *stopped = s;
+        return statistics_of(renderer.film());
+    }
+};
+
+} // namespace
+
+TEST_CASE("The interval of --target-error covers the true mean as often as it says", "[stop_rules]") {
+    Rendering r;
+    const FilmStatistics truth = r.until({}, test_seed(1), 1 << 18);
+    constexpr double target = 0.05;
+    int covered = 0, runs = 100, met = 0;
+    stats::Moments means;
+    for (int i = 0; i < runs; i++) {
+        Stopped stopped;
+        const FilmStatistics s = r.until({.relative_error = target}, test_seed(100 + unsigned(i)), 1u << 20, &stopped);
+        REQUIRE(s.samples == 64ull * stopped.spp); // the pilot's are not in the film
+        const double error = std::hypot(s.stderr_luminance, truth.stderr_luminance);
+        covered += std::abs(s.mean_luminance - truth.mean_luminance) <= 1.959964 * error;
+        met += s.stderr_luminance <= target * s.mean_luminance;
+        means.add(s.mean_luminance);
+    }
+    INFO(covered << " of 100 intervals cover; " << met << " met the target; mean " << means.mean() << " true " << truth.mean_luminance);
+    CHECK_FALSE(stats::binomial_test(covered, runs, 0.95).rejected(1e-4));
+    CHECK_FALSE(stats::t_test(means.sample(), truth.mean_luminance).rejected(1e-4)); // unbiased
+    CHECK(met >= 60); // the margin of the pilot
+}
+
+TEST_CASE("--target-error takes at most the samples that are allowed, and says so", "[stop_rules]") {
+    Rendering r;
+    Stopped stopped;
+    const FilmStatistics s = r.until({.relative_error = 1e-6}, test_seed(3), 32, &stopped);
+    CHECK(stopped.spp == 32);
+    CHECK(s.samples == 64 * 32);
+    CHECK(s.stderr_luminance > 1e-6 * s.mean_luminance);
+}
+
+TEST_CASE("--time ends after that much kernel time, and stops no render that ends before", "[stop_rules]") {
+    Rendering r;
+    CHECK(r.until({.seconds = 1000}, test_seed(4), 16).samples == 64 * 16);
+    Stopped stopped;
+    const FilmStatistics s = r.until({.seconds = 0.3}, test_seed(5), 1u << 30, &stopped);
+    CHECK(stopped.complete);
+    CHECK(s.samples < 64ull << 30);
+    CHECK(r.renderer.kernel_seconds() >= 0.3);
+    CHECK(r.renderer.kernel_seconds() < 3); // a launch is about 0.1 s
+}
+
+TEST_CASE("Durations and errors are read with their units", "[stop_rules]") {
+    CHECK(parse_seconds("30s") == 30);
+    CHECK(parse_seconds("500ms") == Approx(0.5));
+    CHECK(parse_seconds("2min") == 120);
+    CHECK(parse_fraction("1%") == Approx(0.01));
+    CHECK(parse_fraction("0.01") == 0.01);
+    for (const char *bad : {"", "s", "-1s", "0", "3 parsecs", "nan", "inf"})
+        CHECK_THAT(error_of([&] { parse_seconds(bad); }), Catch::Contains("possible: 30s"));
+    for (const char *bad : {"", "0%", "100%", "1s", "nan"})
+        CHECK_THAT(error_of([&] { parse_fraction(bad); }), Catch::Contains("possible: 1%"));
+}
