@@ -100,23 +100,28 @@ static void walk_closest(const Scene *scene, LaneRay ray, real1 *t_out, real1 *u
                 }
             }
         } else {
-            // Push the children that are met, the nearest last.
+            // On to the nearest child that is met; the others wait on the stack.
             global const BvhNode *node = scene->nodes + child;
             real8 entry;
             ulong met = intersect_children(node, &ray, &entry);
-            real1 es[8];
-            vstore8(entry, 0, es);
-            int bottom = top;
-            for (; met; met &= met - 1) {
+            if (met) {
+                real1 es[8];
+                vstore8(entry, 0, es);
                 uint i = first_of(met);
-                int place = top++;
-                while (place > bottom && entries[place - 1] < es[i]) {
-                    entries[place] = entries[place - 1];
-                    stack[place] = stack[place - 1];
-                    place--;
+                real1 nearest = es[i];
+                child = node->child[i];
+                for (met &= met - 1; met; met &= met - 1) {
+                    i = first_of(met);
+                    real1 e = es[i];
+                    uint other = node->child[i];
+                    int nearer = e < nearest;
+                    entries[top] = nearer ? nearest : e;
+                    stack[top] = nearer ? child : other;
+                    top++;
+                    nearest = nearer ? e : nearest;
+                    child = nearer ? other : child;
                 }
-                entries[place] = es[i];
-                stack[place] = node->child[i];
+                continue;
             }
         }
         do {
@@ -137,7 +142,12 @@ static int walk_any(const Scene *scene, LaneRay ray) {
         } else {
             global const BvhNode *node = scene->nodes + child;
             real8 entry;
-            for (ulong met = intersect_children(node, &ray, &entry); met; met &= met - 1) stack[top++] = node->child[first_of(met)];
+            ulong met = intersect_children(node, &ray, &entry);
+            if (met) {
+                child = node->child[first_of(met)];
+                for (met &= met - 1; met; met &= met - 1) stack[top++] = node->child[first_of(met)];
+                continue;
+            }
         }
         if (top == 0) return 0;
         child = stack[--top];
