@@ -49,6 +49,7 @@ std::vector<Material> materials() {
     const auto phong = [](float n) {
         BsdfRecord record = bsdf_record(BSDF_phong, 0.8f);
         record.u.phong.n = n;
+        record.u.phong.pd = 0.3f;
         return record;
     };
     BsdfRecord uniform = bsdf_record(BSDF_diffuse, 0.6f);

@@ -173,6 +173,29 @@ TriangleMesh ball(int rings, int segments) {
     return mesh;
 }
 
+// A closed cylinder with few large triangles at its ends and many small ones around.
+TriangleMesh drum(int rows, int segments) {
+    TriangleMesh mesh;
+    const auto corner = [](unsigned i) { return TriangleMesh::Corner{i, OPAL_NONE}; };
+    const auto at = [&](int i, int j) { return corner(unsigned(i * segments + j % segments)); };
+    for (int i = 0; i <= rows; i++)
+        for (int j = 0; j < segments; j++) {
+            const double phi = 2 * std::numbers::pi * j / segments;
+            mesh.positions.push_back({std::cos(phi), std::sin(phi), 1.6 * i / rows - 0.8});
+        }
+    for (int j = 0; j < segments; j++) {
+        for (int i = 0; i < rows; i++) {
+            mesh.triangles.push_back({at(i, j), at(i, j + 1), at(i + 1, j)});
+            mesh.triangles.push_back({at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)});
+        }
+        if (j > 0 && j < segments - 1) {
+            mesh.triangles.push_back({at(0, 0), at(0, j + 1), at(0, j)});
+            mesh.triangles.push_back({at(rows, 0), at(rows, j), at(rows, j + 1)});
+        }
+    }
+    return mesh;
+}
+
 // From points inside a closed mesh towards its vertices and points of its edges, as floats have them: each must hit.
 Finding no_leaks(const std::string &what, const TriangleMesh &mesh, int lanes, const Sources &sources, unsigned seed) {
     const FlatScene flat = flatten(scene_of({diffuse(mesh)}), lanes);
@@ -214,7 +237,7 @@ Findings check_tiny(const Sources &sources, unsigned seed) {
 Findings check_watertight(const Sources &sources, unsigned seed) {
     Findings findings;
     for (int lanes : tested_lanes())
-        for (const auto &[what, mesh] : {std::pair{"a ball", ball(20, 31)}, {"a cube", cube({}, 1)}, {"a crystal", ball(3, 7)}})
+        for (const auto &[what, mesh] : {std::pair{"a ball", ball(20, 31)}, {"a cube", cube({}, 1)}, {"a crystal", ball(3, 7)}, {"a drum", drum(30, 24)}})
             findings.push_back(no_leaks(what, mesh, lanes, sources, seed));
     return findings;
 }

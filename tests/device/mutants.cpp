@@ -1,0 +1,73 @@
+// Negative controls of the kernels' functions: wrong ones that the checks must reject.
+#include "support/device.h"
+#include "support/kernel_checks.h"
+#include "support/mutants.h"
+#include "support/seeds.h"
+
+using namespace opal;
+using namespace opal::test;
+
+namespace {
+
+const std::vector<Control> numbers = {
+    {{"numbers that may be 1", "rng.cl", "to_real(bits >> 8) * R(5.9604644775390625e-08)", "to_real(bits) * R(2.3283064365386963e-10)"}, "known numbers", check_known_numbers},
+    {{"Sobol's second dimension mirrored", "rng.cl", "(x & 0x55555555u) << 1;\n    x ^= (x & 0x33333333u) << 2", "(x & 0xaaaaaaaau) >> 1;\n    x ^= (x & 0xccccccccu) >> 2"}, "Sobol", check_sobol},
+    {{"scramble from the lowest bit", "rng.cl", "x ^= x * 0x53a22864u;\n    return reverse_bits(x);", "x ^= x * 0x53a22864u;\n    return x;"}, "Sobol", check_sobol},
+    {{"a permutation that repeats", "rng.cl", "return (r + p % n) % n;", "return (r & ~1u) % n;"}, "stratified", check_stratified},
+    {{"strata in one order for all dimensions", "rng.cl", "u3 h = pcg3d(s.pixel, dimension, (uints)(seed) ^ (round * 0x85ebca6bu));", "u3 h = pcg3d(s.pixel, (uints)(0), (uints)(seed) ^ (round * 0x85ebca6bu));"},
+     "stratified", check_stratified},
+    {{"one jitter for all dimensions", "rng.cl", "u3 jitter = pcg3d(s.key0, s.key1, dimension);", "u3 jitter = pcg3d(s.key0, s.key1, (uints)(0));"}, "independence", check_independence},
+    {{"neighbouring pixels share numbers", "rng.cl", "uints x = pixel, y = sample, z", "uints x = pixel >> 1, y = sample, z"}, "independence", check_independence},
+    {{"the seed is ignored", "rng.cl", "z = (uints)(seed), w", "z = (uints)(seed * 0u), w"}, "independence", check_independence},
+};
+
+const std::vector<Control> hits = {
+    {{"children beyond tmin are dropped", "bvh.cl", "while (entries[top] >= ray.tmax);", "while (entries[top] > 4 * ray.tmin + R(0.3));"}, "tree", check_tree},
+    {{"any-hit enters one child of each node", "bvh.cl", "for (ulong met = intersect_children(node, &ray, &entry); met; met &= met - 1) stack", "for (ulong met = intersect_children(node, &ray, &entry); met; met = 0) stack"},
+     "tree", check_tree},
+    {{"far bound ignored in leaves", "triangle.cl", " & (test.distance < ray->tmax * test.determinant)", ""}, "tree", check_tree},
+    {{"near bound ignored in leaves", "triangle.cl", "(test.distance > ray->tmin * test.determinant)", "(test.distance > 0)"}, "tree", check_tree},
+    {{"back faces culled", "triangle.cl", " | real8_max(a, real8_max(b, c)) <= 0", ""}, "tree", check_tree},
+    {{"last hit instead of nearest", "bvh.cl", "\n                      (test.distance * determinant < distance * test.determinant)", "\n                      (test.distance < ray.tmax * test.determinant)"}, "tiny", check_tiny},
+    {{"barycentric weights swapped", "bvh.cl", "fabs(b) * reciprocal, fabs(c) * reciprocal, slot}", "fabs(c) * reciprocal, fabs(b) * reciprocal, slot}"}, "tiny", check_tiny},
+    {{"far bound ignored by any-hit", "bvh.cl", " & (test.distance < ray.tmax * test.determinant));", ");"}, "tiny", check_tiny},
+    {{"edges belong to no triangle", "triangle.cl", "real8_min(a, real8_min(b, c)) >= 0 | real8_max(a, real8_max(b, c)) <= 0", "real8_min(a, real8_min(b, c)) > 0 | real8_max(a, real8_max(b, c)) < 0"},
+     "watertight", check_watertight},
+    {{"boxes a little small", "bvh.cl", "real8_min(real8_min(far_x, far_y), far_z) * (1 + 8 * EPSILON)", "real8_min(real8_min(far_x, far_y), far_z) * (1 - 1000 * EPSILON)"}, "watertight", check_watertight},
+};
+
+const std::vector<Control> densities = {
+    {{"cosine hemisphere without the cosine", "warp.cl", "direction_of(sqrt(1 - u.x), sqrt(u.x), u.y)", "direction_of(1 - u.x, sqrt(u.x * (2 - u.x)), u.y)"}, "warps", check_warps},
+    {{"cosine density 2 % too large", "warp.cl", "return real_max(w.z, (real)(0)) * INV_PI;", "return real_max(w.z, (real)(0)) * (INV_PI * R(1.02));"}, "warps", check_warps},
+    {{"tent 2 % narrower", "warp.cl", "return v2_of(tent_1d(u.x), tent_1d(u.y));", "return v2_of(R(0.98) * tent_1d(u.x), tent_1d(u.y));"}, "warps", check_warps},
+    {{"disk without the root", "warp.cl", "real r = sqrt(u.x);", "real r = u.x;"}, "warps", check_warps},
+    {{"Beckmann without its last cosine", "warp.cl", "(square(alpha * h.z) * h.z)", "square(alpha * h.z)"}, "warps", check_warps},
+    {{"Phong lobe drawn by n", "warp.cl", "log(u.x) / (n + 1)", "log(u.x) / n"}, "warps", check_warps},
+    {{"cosine dropped from the uniform weight", "bsdfs/diffuse.cl", "b.use_cosine ? (real)(1) : 2 * wo.z", "b.use_cosine ? (real)(1) : (real)(1)"}, "BSDFs", check_bsdfs},
+    {{"half vector's Jacobian halved", "bsdfs/microfacet.cl", "real coat = square_to_beckmann_pdf(h, b.alpha) / (4 *", "real coat = square_to_beckmann_pdf(h, b.alpha) / (2 *"}, "BSDFs", check_bsdfs},
+    {{"Phong's parts in each other's share", "bsdfs/phong.cl", "real density = b.pd * square_to_cosine_hemisphere_pdf(wo) + (1 - b.pd)", "real density = (1 - b.pd) * square_to_cosine_hemisphere_pdf(wo) + b.pd"},
+     "BSDFs", check_bsdfs},
+    {{"Phong's lobe about the viewer", "bsdfs/phong.cl", "Frame mirrored = frame_of(reflect_z(wi));", "Frame mirrored = frame_of(wi);"}, "BSDFs", check_bsdfs},
+    {{"shadowing of one side only", "bsdfs/microfacet.cl", "microfacet_g1(wi, h, b.alpha) * microfacet_g1(wo, h, b.alpha)", "microfacet_g1(wi, h, b.alpha)"}, "albedos", check_albedos},
+    {{"coat's indices swapped", "bsdfs/microfacet.cl", "b.ext_ior, b.int_ior);", "b.int_ior, b.ext_ior);"}, "albedos", check_albedos},
+    {{"albedo off by 2 %", "bsdfs/diffuse.cl", "v3_scale(b.albedo, wi.z > 0 ? weight : (real)(0))", "v3_scale(b.albedo, wi.z > 0 ? weight * R(1.02) : (real)(0))"}, "albedos", check_albedos},
+    {{"eta inverted", "bsdfs/dielectric.cl", "real near = outside ? b.ext_ior : b.int_ior, far = outside ? b.int_ior : b.ext_ior;", "real near = outside ? b.int_ior : b.ext_ior, far = outside ? b.ext_ior : b.int_ior;"},
+     "refraction", check_refraction},
+    {{"Snell's law inverted", "fresnel.cl", "safe_sqrt(1 - sin2 / square(eta))", "safe_sqrt(1 - sin2 * square(eta))"}, "refraction", check_refraction},
+    {{"one polarisation only", "fresnel.cl", "R(0.5) * (r_s * r_s + r_p * r_p)", "(r_s * r_s)"}, "refraction", check_refraction},
+    {{"emitter's alias kept where it should be left", "emitter.cl", "mask kept = u.y < GATHER(real, scene->emitters, row, .accept);", "mask kept = u.y >= GATHER(real, scene->emitters, row, .accept);"},
+     "emitters", check_emitters},
+    {{"triangle's alias never taken", "emitters/mesh.cl", "triangle.y < GATHER(real, scene->light_triangles, row, .accept)", "triangle.y < 2"}, "emitters", check_emitters},
+    {{"the triangle's half of the square alone", "emitters/mesh.cl", "real u = folded ? 1 - point.x : point.x, v = folded ? 1 - point.y : point.y;", "real u = point.x, v = point.y * (1 - point.x);"}, "emitters",
+     check_emitters},
+    {{"density of the mesh for that of the triangle", "emitters/mesh.cl", "2 * inverse_length / to_real(count)", "1 / GATHER(real, scene->emitters, id, .area)"}, "emitters", check_emitters},
+    {{"emitters' choice left out of the density", "emitter.cl", "return pdf * emitter_probability(scene, id);", "return pdf;"}, "emitters", check_emitters},
+    {{"light's normal reversed", "emitters/parallelogram.cl", "v3 n = v3_cross(u, v);", "v3 n = v3_cross(v, u);"}, "emitters", check_emitters},
+    {{"a coefficient of the sine", "math.cl", "R(8.3333333333333333e-03)", "R(8.333e-03)"}, "turns", check_trigonometry},
+};
+
+} // namespace
+
+TEST_CASE("Every mutant of the random numbers is killed", "[mutants]") { require_all_killed(numbers, test_seed(140)); }
+TEST_CASE("Every mutant of the intersection is killed", "[mutants]") { require_all_killed(hits, test_seed(141)); }
+TEST_CASE("Every mutant of what is drawn is killed", "[mutants]") { require_all_killed(densities, test_seed(142)); }
