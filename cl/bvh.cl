@@ -167,9 +167,17 @@ static void view_vertices(const Scene *scene, Ray ray, TinyView *view) {
     real ox = v3_dot(px, ray.o), oy = v3_dot(py, ray.o), oz = v3_dot(pz, ray.o);
     for (uint i = 0; i < scene->settings->tiny_vertex_count; i++) {
         real1 x = scene->tiny_vertices[3 * i], y = scene->tiny_vertices[3 * i + 1], z = scene->tiny_vertices[3 * i + 2];
-        view->x[i] = mul_add(px.x, (real)(x), mul_add(px.y, (real)(y), mul_add(px.z, (real)(z), -ox)));
-        view->y[i] = mul_add(py.x, (real)(x), mul_add(py.y, (real)(y), mul_add(py.z, (real)(z), -oy)));
-        view->z[i] = mul_add(pz.x, (real)(x), mul_add(pz.y, (real)(y), mul_add(pz.z, (real)(z), -oz)));
+        if (OPAL_HAS_tree) { // to the bit what intersect_block makes of a vertex, or rays leak between its triangles and these
+            v3 d = v3_sub(v3_of((real)(x), (real)(y), (real)(z)), ray.o);
+            real along = s.x ? d.x : s.y ? d.y : d.z;
+            view->x[i] = mul_add(-s.shear_x, along, s.x ? d.y : s.y ? d.z : d.x);
+            view->y[i] = mul_add(-s.shear_y, along, s.x ? d.z : s.y ? d.x : d.y);
+            view->z[i] = along * s.scale_z;
+        } else {
+            view->x[i] = mul_add(px.x, (real)(x), mul_add(px.y, (real)(y), mul_add(px.z, (real)(z), -ox)));
+            view->y[i] = mul_add(py.x, (real)(x), mul_add(py.y, (real)(y), mul_add(py.z, (real)(z), -oy)));
+            view->z[i] = mul_add(pz.x, (real)(x), mul_add(pz.y, (real)(y), mul_add(pz.z, (real)(z), -oz)));
+        }
     }
 }
 
