@@ -142,12 +142,7 @@ static int walk_any(const Scene *scene, LaneRay ray) {
         } else {
             global const BvhNode *node = scene->nodes + child;
             real8 entry;
-            ulong met = intersect_children(node, &ray, &entry);
-            if (met) {
-                child = node->child[first_of(met)];
-                for (met &= met - 1; met; met &= met - 1) stack[top++] = node->child[first_of(met)];
-                continue;
-            }
+            for (ulong met = intersect_children(node, &ray, &entry); met; met &= met - 1) stack[top++] = node->child[first_of(met)];
         }
         if (top == 0) return 0;
         child = stack[--top];
