@@ -1,7 +1,7 @@
 // bvh: closest and any hit of each lane. The largest triangles of a scene, or all of a tiny one, are listed: each is tested
 // against all lanes at once. The others are in a tree, which each lane walks alone, with the eight children or triangles of
 // a node in one vector; a lane whose ray misses the tree's box does not walk.
-#define STACK_SIZE 64 // flatten bounds the tree's depth so that this is never exceeded
+// A walk's stack holds OPAL_STACK entries: flatten builds trees that never need more.
 
 // The axis of the largest component of d, and with it the shear of triangle.cl.
 typedef struct {
@@ -74,8 +74,8 @@ static ulong intersect_children(global const BvhNode *node, const LaneRay *ray, 
 
 // Nearest hit of one ray before its tmax; leaves the outputs as they are where there is none.
 static void walk_closest(const Scene *scene, LaneRay ray, real1 *t_out, real1 *u_out, real1 *v_out, uint *slot_out) {
-    uint stack[STACK_SIZE];
-    real1 entries[STACK_SIZE];
+    uint stack[OPAL_STACK];
+    real1 entries[OPAL_STACK];
     int top = 0;
     uint child = scene->settings->root;
     for (;;) {
@@ -133,7 +133,7 @@ static void walk_closest(const Scene *scene, LaneRay ray, real1 *t_out, real1 *u
 
 // Does anything lie between tmin and tmax of one ray?
 static int walk_any(const Scene *scene, LaneRay ray) {
-    uint stack[STACK_SIZE];
+    uint stack[OPAL_STACK];
     int top = 0;
     uint child = scene->settings->root;
     for (;;) {
