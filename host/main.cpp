@@ -25,6 +25,7 @@ const Command commands[] = {
     {"render", "Render a scene to an EXR and a PNG", setup_render},
     {"devices", "List every OpenCL platform and device, and which one `render` takes", setup_devices},
     {"inspect", "Show what a scene holds, and what its kernel will be compiled with and why", setup_inspect},
+    {"sweep", "Measure error against time of several strategies on a scene, as one HTML page", setup_sweep},
     {"test", "Run Nori's tests: means against references, samples against densities", setup_test},
     {"warp", "Draw samples of a warp, a BSDF or a light and hold them against their density", setup_warp},
     {"probe-platform", hidden, setup_probe_platform},

@@ -14,6 +14,7 @@ RunCommand setup_devices(CLI::App &app);
 RunCommand setup_inspect(CLI::App &app);
 RunCommand setup_probe_platform(CLI::App &app); // hidden; see device/probe.h
 RunCommand setup_render(CLI::App &app);
+RunCommand setup_sweep(CLI::App &app);
 RunCommand setup_test(CLI::App &app);
 RunCommand setup_warp(CLI::App &app);
 

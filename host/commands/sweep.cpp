@@ -1,0 +1,164 @@
+// opal sweep: error against time of several strategies on one scene.
+#include "base/command_line.h"
+#include "base/log.h"
+#include "base/signals.h"
+#include "base/units.h"
+#include "commands/commands.h"
+#include "commands/options.h"
+#include "render/report.h"
+#include "sweep/page.h"
+#include "sweep/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+namespace opal {
+
+namespace {
+
+struct Options {
+    SceneOptions scene;
+    std::vector<std::string> strategies, math;
+    std::vector<unsigned> spp = {4, 16, 64};
+    unsigned replicates = 5, seed = 0, reference_spp = 0, width = 0;
+    std::string device, reference, budget, out;
+    bool quiet = false;
+};
+
+// FNV-1a (Fowler, Noll, Vo) over the scene's text, its resolved strategy and its meshes.
+std::string hash_of(const SceneDescription &scene) {
+    std::ifstream stream(scene.file, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+    bytes += strategy_json(scene).dump();
+    for (const Mesh &mesh : scene.meshes)
+        if (const auto *m = std::get_if<TriangleMesh>(&mesh.shape))
+            bytes.append(reinterpret_cast<const char *>(m->positions.data()), m->positions.size() * sizeof(Vec3));
+    unsigned long long hash = 0xcbf29ce484222325ull;
+    for (unsigned char byte : bytes)
+        hash = (hash ^ byte) * 0x100000001b3ull;
+    return fmt::format("{:016x}", hash);
+}
+
+void check_numbers(const Options &o) {
+    if (o.replicates < 2)
+        throw Error(fmt::format("--replicates {}: an interval needs at least 2", o.replicates));
+    for (unsigned spp : o.spp)
+        if (spp < 1 || spp > pilot_first)
+            throw Error(fmt::format("--spp {}: possible are 1 to {}", spp, pilot_first));
+}
+
+Image read_reference(const std::string &file, const SceneDescription &scene) {
+    Image image = read_exr(file);
+    if (image.width != scene.camera.width || image.height != scene.camera.height)
+        throw Error(fmt::format("--reference {}: has {} x {} pixels, the scene {} x {}", file, image.width, image.height, scene.camera.width,
+                                scene.camera.height));
+    for (const char *channel : {"R", "G", "B"})
+        image.get(channel);
+    const auto of = image.metadata.find("opal.scene");
+    if (of != image.metadata.end() && std::filesystem::path(of->second).filename() != scene.file.filename())
+        throw Error(fmt::format("--reference {}: is an image of {}, not of {}", file, of->second, scene.file.string()));
+    return image;
+}
+
+SweepRecord fresh_record(const Options &o, const SceneDescription &scene, const DeviceInfo &device) {
+    SweepRecord r;
+    r.version = OPAL_VERSION;
+    r.scene = scene.file.string();
+    r.scene_hash = hash_of(scene);
+    r.device = device.name;
+    r.driver = device.driver;
+    r.reference_file = o.reference;
+    r.width = scene.camera.width;
+    r.height = scene.camera.height;
+    r.lanes = scene.strategy.lanes ? scene.strategy.lanes : device.native_lanes;
+    r.command = command_line();
+    r.integrator = scene.integrator_type;
+    r.replicates = o.replicates;
+    r.spp = o.spp;
+    std::sort(r.spp.begin(), r.spp.end());
+    r.spp.erase(std::unique(r.spp.begin(), r.spp.end()), r.spp.end());
+    r.budget = o.budget.empty() ? 0 : parse_seconds(o.budget);
+    return r;
+}
+
+std::filesystem::path make_folder(const Options &o, const SceneDescription &scene) {
+    const std::filesystem::path folder = o.out.empty() ? scene.file.stem().string() + "_sweep" : o.out;
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error)
+        throw Error(fmt::format("-o {}: no folder can be made there: {}", folder.string(), error.message()));
+    return folder;
+}
+
+void write_results(const SweepRecord &record, const std::filesystem::path &folder) {
+    const SweepSummary summary = summarise(record);
+    write_safely(folder / "sweep.csv", csv(summary));
+    write_safely(folder / "index.html", html_page(record, summary, folder));
+    for (const std::string &sentence : verdict(record, summary))
+        std::cout << sentence << "\n";
+    info(fmt::format("wrote   {}", (folder / "index.html").string()));
+}
+
+int run(const Options &o) {
+    set_quiet(o.quiet);
+    check_numbers(o);
+    SceneDescription scene = load_scene(o.scene);
+    if (o.width) {
+        scene.camera.height = std::max(1, int(std::lround(double(o.width) * scene.camera.height / scene.camera.width)));
+        scene.camera.width = int(o.width);
+    }
+    const std::vector<Candidate> candidates = parse_strategies(scene, o.strategies, o.math);
+    const Sources sources = load_sources(o.scene);
+    SweepPlan plan{.folder = {}, .seed = o.seed, .reference_spp = o.reference_spp, .sources = &sources};
+    Image reference;
+    if (!o.reference.empty()) {
+        reference = read_reference(o.reference, scene);
+        plan.reference = &reference;
+    }
+    const DevicePick pick = pick_device(o.device, list_devices());
+    const SweepRecord fresh = fresh_record(o, scene, pick.info);
+    plan.folder = make_folder(o, scene);
+    SweepRecord record = resume(plan.folder, fresh);
+    save(record, plan.folder); // the folder can be written
+    const Device device = open_device(pick.info);
+    info(fmt::format("device  {} (driver {}; {}), {} lanes", pick.info.name, pick.info.driver, pick.reason, record.lanes));
+    watch_interrupts();
+    try {
+        run_sweep(plan, device, candidates, record);
+    } catch (const Interrupted &) {
+        warn("interrupted: the same command goes on where it stopped");
+        return exit_interrupted;
+    }
+    write_results(record, plan.folder);
+    return 0;
+}
+
+} // namespace
+
+RunCommand setup_sweep(CLI::App &app) {
+    auto o = std::make_shared<Options>();
+    add_scene_options(app, o->scene);
+    add_device_option(app, o->device);
+    app.add_option("--strategies", o->strategies,
+                   "course, all, or lists axis=value,... after the scene; the first is the baseline [course]\n"
+                   "  course: hemisphere sampling, light sampling and MIS of both kinds; all: samplers and choices besides")
+        ->type_name("STRATEGY...")
+        ->expected(1, -1);
+    app.add_option("--spp", o->spp, "Samples per pixel of the points")->delimiter(',')->type_name("N,...")->capture_default_str();
+    app.add_option("--replicates", o->replicates, "Renders of each point, with seeds of their own; at least 2")->capture_default_str();
+    app.add_option("--seed", o->seed, "Of the first replicate's random numbers")->capture_default_str();
+    app.add_option("--reference", o->reference, "EXR to hold the images against [made by the best strategy]")->type_name("FILE");
+    app.add_option("--reference-spp", o->reference_spp, "Samples per pixel of the reference that is made [8 times the largest --spp]");
+    app.add_option("--budget", o->budget, "Kernel time for all of it: leaves out the largest --spp until it fits")->type_name("TIME");
+    app.add_option("--width", o->width, "Pixels; keeps the aspect (default: the scene's)")->check(CLI::Range(1, 65535));
+    app.add_option("--math-modes", o->math, "Cross the strategies with these: precise,fast")->delimiter(',')->type_name("MODE,...");
+    app.add_option("-o,--output", o->out, "Folder; a sweep that is there already goes on [SCENE_sweep]")->type_name("FOLDER");
+    app.add_flag("--quiet", o->quiet, "Print the verdict, warnings and errors only");
+    return [o] { return run(*o); };
+}
+
+} // namespace opal

@@ -1,0 +1,106 @@
+#include "sweep/analysis.h"
+
+#include "stats/hypothesis.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace opal {
+
+namespace {
+
+using stats::Moments;
+using stats::Sample;
+
+template <class Value> Sample sample_of(const Point &point, Value value) {
+    Moments moments;
+    for (const Replicate &r : point.replicates)
+        moments.add(value(r));
+    return moments.sample();
+}
+
+Sample mse_seconds(const Point &p) { return sample_of(p, [](const Replicate &r) { return r.mse * r.seconds; }); }
+Sample rel_mse_seconds(const Point &p) { return sample_of(p, [](const Replicate &r) { return r.rel_mse * r.seconds; }); }
+
+// Replicates are independent; the samples of one replicate's points are not, so that each gives one slope.
+stats::Interval slope_of(const StrategyRecord &s) {
+    Moments slopes;
+    for (size_t r = 0; r < s.points.back().replicates.size(); r++) {
+        std::vector<double> spp, mse;
+        for (const Point &p : s.points)
+            if (r < p.replicates.size() && p.replicates[r].mse > 0) {
+                spp.push_back(p.spp);
+                mse.push_back(p.replicates[r].mse);
+            }
+        if (const double slope = stats::fit_log_log(spp, mse, {}, sweep_confidence).slope.estimate; std::isfinite(slope))
+            slopes.add(slope);
+    }
+    return stats::mean_interval(slopes.sample(), sweep_confidence);
+}
+
+void judge_bias(StrategySummary &s, const Point &largest, const ReferenceRecord &reference) {
+    const Sample means = sample_of(largest, [](const Replicate &r) { return r.mean_luminance; });
+    if (means.n < 2 || !(reference.mean_luminance > 0))
+        return;
+    const double own = means.variance / means.n, other = reference.stderr_luminance * reference.stderr_luminance;
+    const double difference = means.mean - reference.mean_luminance;
+    s.bias = difference / reference.mean_luminance;
+    s.bias_p = stats::difference_test(difference, std::sqrt(own + other), stats::welch_dof(own, means.n - 1, other, INFINITY),
+                                      reference.mean_luminance)
+                   .p_value;
+}
+
+} // namespace
+
+stats::Interval StrategySummary::time_to(double rel_mse) const {
+    if (record->independent)
+        return {cost.estimate / rel_mse, cost.low / rel_mse, cost.high / rel_mse};
+    const PointSummary &last = points.back();
+    return {last.seconds * std::pow(last.rel_mse.estimate / rel_mse, -1 / slope.estimate)};
+}
+
+SweepSummary summarise(const SweepRecord &record) {
+    SweepSummary summary;
+    for (const StrategyRecord &r : record.strategies) {
+        if (r.points.empty())
+            continue;
+        StrategySummary s;
+        s.record = &r;
+        for (const Point &p : r.points) {
+            const auto mean = [&](double Replicate::*f) { return sample_of(p, [f](const Replicate &x) { return x.*f; }); };
+            s.points.push_back({p.spp, p.replicates.size(), mean(&Replicate::seconds).mean,
+                                stats::positive_mean_interval(mean(&Replicate::mse), sweep_confidence),
+                                stats::positive_mean_interval(mean(&Replicate::rel_mse), sweep_confidence)});
+        }
+        s.slope = slope_of(r);
+        s.cost = stats::positive_mean_interval(rel_mse_seconds(r.points.back()), sweep_confidence);
+        judge_bias(s, r.points.back(), record.reference);
+        summary.strategies.push_back(std::move(s));
+    }
+    std::vector<StrategySummary> &all = summary.strategies;
+    const auto cheaper = [](const StrategySummary &a, const StrategySummary &b) { return a.cost.estimate < b.cost.estimate; };
+    summary.best = size_t(std::min_element(all.begin(), all.end(), cheaper) - all.begin());
+    for (StrategySummary &s : all) {
+        const Point &own = s.record->points.back(), &first = all[0].record->points.back(), &best = all[summary.best].record->points.back();
+        s.slower = stats::ratio_interval(rel_mse_seconds(own), rel_mse_seconds(best), sweep_confidence);
+        s.efficiency = stats::ratio_interval(mse_seconds(first), mse_seconds(own), sweep_confidence);
+        if (&s == &all[summary.best])
+            s.slower = {1, 1, 1};
+        if (&s == &all[0])
+            s.efficiency = {1, 1, 1};
+    }
+    return summary;
+}
+
+std::string csv(const SweepSummary &summary) {
+    std::string text = "strategy,spp,replicates,seconds,mse,mse_low,mse_high,rel_mse,rel_mse_low,rel_mse_high\n";
+    for (const StrategySummary &s : summary.strategies)
+        for (const PointSummary &p : s.points)
+            text += fmt::format("\"{}\",{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", s.record->name, p.spp, p.replicates,
+                                p.seconds, p.mse.estimate, p.mse.low, p.mse.high, p.rel_mse.estimate, p.rel_mse.low, p.rel_mse.high);
+    return text;
+}
+
+} // namespace opal

@@ -1,0 +1,50 @@
+// Renders what a sweep needs.
+#pragma once
+
+#include "render/renderer.h"
+#include "sweep/record.h"
+#include "sweep/strategies.h"
+
+#include <memory>
+
+namespace opal {
+
+// One strategy, compiled for a device.
+class Measured {
+public:
+    Measured(const Device &device, const Candidate &candidate, const Sources &sources, int lanes);
+
+    struct Rendered {
+        Film film;
+        Image image;
+        double seconds = 0; // of kernel time
+    };
+    // Samples [first, first + spp) of `seed`. Throws Interrupted.
+    Rendered render(unsigned spp, unsigned seed, unsigned first = 0);
+
+    double compile_seconds() const { return renderer_->compile_seconds(); }
+
+private:
+    void compile(unsigned spp);
+    const Device &device_;
+    const Candidate &candidate_;
+    const Sources &sources_;
+    int lanes_;
+    unsigned compiled_spp_ = 0; // of stratified samples: their strata belong to one number of samples
+    std::unique_ptr<FlatScene> flat_;
+    std::unique_ptr<Renderer> renderer_;
+};
+
+struct Interrupted {}; // by Ctrl-C
+
+// Sample indices of what is not a replicate: disjoint from those, and from each other.
+constexpr unsigned pilot_first = 1u << 30, reference_first_a = 2u << 30, reference_first_b = 3u << 30;
+
+struct Pilot {
+    double cost = 0;             // mean over the pixels of the relative variance of one sample's luminance, times its seconds
+    double seconds_a_sample = 0; // of each pixel
+};
+// A short render: about `seconds` of kernel time. Its samples are for deciding, and no part of any result.
+Pilot run_pilot(Measured &measured, unsigned seed, double seconds);
+
+} // namespace opal

@@ -1,0 +1,173 @@
+#include "sweep/page.h"
+
+#include "base/base64.h"
+#include "sweep/svg.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+namespace opal {
+
+namespace {
+
+const char *const head = R"(<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<style>
+body { font: 16px/1.5 system-ui, sans-serif; max-width: 1000px; margin: 2em auto; padding: 0 1em; color: #222; background: #fff }
+h1 { font-size: 1.6em } h2 { margin-top: 2em; font-size: 1.25em }
+.verdict { background: #f3f6fa; border-left: 4px solid #0072b2; padding: .6em 1.2em }
+.verdict li:first-child { font-weight: 600 }
+table { border-collapse: collapse; font-size: .9em; font-variant-numeric: tabular-nums }
+th, td { padding: .3em .7em; border-bottom: 1px solid #ddd; text-align: right; vertical-align: top }
+th:first-child, td:first-child { text-align: left } td small { display: block; color: #666; white-space: nowrap }
+.dot { display: inline-block; width: .7em; height: .7em; border-radius: 50%; margin-right: .5em }
+svg { width: 100%; font: 13px system-ui, sans-serif } svg text { fill: #222 }
+.decade { stroke: #ccc } .minor { stroke: #eee } .bar { stroke-width: 1.5 }
+.strategy:hover path { stroke-width: 5 } svg:hover .strategy { opacity: .25 } svg:hover .strategy:hover { opacity: 1 }
+svg:not(:has(.strategy:hover)) .strategy { opacity: 1 }
+.grid { display: grid; grid-template-columns: repeat(auto-fill, minmax(300px, 1fr)); gap: 1em }
+figure { margin: 0 } figure img { width: 100%; cursor: zoom-in; image-rendering: pixelated }
+figure.large { grid-column: 1 / -1 } figure.large img { cursor: zoom-out }
+figcaption { font-size: .9em } code, pre { background: #f4f4f4; padding: .1em .3em } pre { padding: .8em; overflow: auto }
+</style>
+)";
+
+const char *const tail = R"(<script>
+for (const image of document.querySelectorAll('figure img'))
+    image.onclick = () => image.parentElement.classList.toggle('large');
+</script>
+</body></html>
+)";
+
+constexpr double levels[] = {0.1, 0.01, 0.001}; // relMSE
+
+bool bounded(const stats::Interval &i) { return std::isfinite(i.high) && i.low > 0; }
+
+std::string seconds_text(double s) {
+    return s < 100 ? fmt::format("{:.2g} s", s) : s < 6000 ? fmt::format("{:.0f} s", s) : fmt::format("{:.1f} h", s / 3600);
+}
+
+// "1.2" above "1.1 to 1.3"
+template <class Format> std::string cell(const stats::Interval &i, Format format, bool known) {
+    return "<td>" + format(i.estimate) + (known ? "<small>" + format(i.low) + " to " + format(i.high) + "</small>" : "") + "</td>";
+}
+
+std::string number(double x) { return fmt::format("{:.3g}", x); }
+
+double bias_level(const SweepSummary &summary) { return 0.01 / double(summary.strategies.size()); }
+
+std::string table(const SweepSummary &summary) {
+    std::string html = "<table><tr><th>strategy</th>";
+    for (double level : levels)
+        html += fmt::format("<th>time to<br>relMSE {:g} %</th>", 100 * level);
+    html += "<th>time relative<br>to the best</th><th>efficiency<br>1 / (MSE &times; s)<br>relative to the first</th><th>slope</th><th>bias</th></tr>\n";
+    for (size_t i = 0; i < summary.strategies.size(); i++) {
+        const StrategySummary &s = summary.strategies[i];
+        html += fmt::format("<tr><td><span class='dot' style='background:{}'></span>{}</td>", strategy_color(i), html_text(s.record->label));
+        for (double level : levels)
+            html += cell(s.time_to(level), seconds_text, bounded(s.time_to(level)));
+        const bool best = i == summary.best, first = i == 0;
+        html += best ? "<td>the best</td>" : cell(s.slower, [](double x) { return number(x) + "&times;"; }, bounded(s.slower));
+        html += first ? "<td>1</td>" : cell(s.efficiency, number, bounded(s.efficiency));
+        html += cell(s.slope, [](double x) { return fmt::format("{:.3f}", x); }, std::isfinite(s.slope.high));
+        html += s.bias_p < bias_level(summary) ? fmt::format("<td><b>{:+.2g} %</b><small>p = {:.1g}</small></td></tr>\n", 100 * s.bias, s.bias_p)
+                                               : "<td>none seen</td></tr>\n";
+    }
+    return html + "</table>\n";
+}
+
+std::string embedded(const std::filesystem::path &png, const std::string &what) {
+    std::ifstream stream(png, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+    return fmt::format("<img alt=\"{}\" title=\"{}\" src=\"data:image/png;base64,{}\">", what, what, base64(bytes));
+}
+
+std::string pictures(const SweepSummary &summary, const std::filesystem::path &folder) {
+    std::string html = "<div class='grid'>\n";
+    for (const StrategySummary &s : summary.strategies) {
+        const Shot &shot = s.record->shot;
+        if (shot.file.empty())
+            continue;
+        const std::string label = html_text(s.record->label);
+        html += "<figure>" + embedded(folder / (shot.file + ".png"), label) + embedded(folder / (shot.file + "_error.png"), label + ": error");
+        html += fmt::format("<figcaption><b>{}</b>: {} samples per pixel in {:.3g} s, relMSE {:.3g} %</figcaption></figure>\n", label, shot.spp,
+                            shot.seconds, 100 * shot.rel_mse);
+    }
+    return html + "</div>\n";
+}
+
+std::string how_measured(const SweepRecord &r) {
+    const ReferenceRecord &ref = r.reference;
+    std::string html = fmt::format("<p>{}, {} &times; {} pixels, on {} (driver {}; {} lanes), by opal {}. Seconds are the device's own kernel times; compiling is "
+                                   "not among them. Each point is the mean of {} renders with seeds of their own, and an interval holds the true "
+                                   "mean with 95 % confidence: Student's t, on the logarithm for errors, times and their ratios.</p>\n",
+                                   html_text(r.scene), r.width, r.height, html_text(r.device), html_text(r.driver), r.lanes, r.version, r.replicates);
+    html += "<p><b>relMSE</b> is the mean over pixels and channels of (image &minus; reference)&sup2; / (reference&sup2; + (1 % of the reference's mean)&sup2;): "
+            "1 % is an image whose typical error is a tenth of each pixel's value. ";
+    html += ref.spp ? fmt::format("The reference has {} samples per pixel of <code>{}</code> ({:.3g} s), two halves of samples that no other image here "
+                                  "uses; what its own noise adds to the errors is estimated from the halves' difference and subtracted.</p>\n",
+                                  ref.spp, html_text(ref.made_by), ref.seconds)
+                    : fmt::format("The reference is <code>{}</code>; {}.</p>\n", html_text(ref.made_by),
+                                  ref.variance_known ? "its variance, kept in its layers, is subtracted" : "it holds no variance, so that its own noise counts as error");
+    html += "<p><b>slope</b>: of log MSE against log samples per pixel; &minus;1 for independent samples, which is why the time to an error "
+            "follows from the largest render. A strategy whose samples are not independent has times without intervals, along its own slope. "
+            "<b>bias</b>: of the mean luminance against the reference, where a test at level 1 % over all strategies sees one.</p>\n";
+    if (!r.left_out_spp.empty())
+        html += fmt::format("<p>Left out for the budget of {:g} s: {} samples per pixel.</p>\n", r.budget, fmt::join(r.left_out_spp, ", "));
+    return html;
+}
+
+std::string list_of(const std::vector<std::string> &sentences) {
+    std::string html = "<ul class='verdict'>\n";
+    for (const std::string &sentence : sentences)
+        html += "<li>" + html_text(sentence) + "</li>\n";
+    return html + "</ul>\n";
+}
+
+} // namespace
+
+std::vector<std::string> verdict(const SweepRecord &record, const SweepSummary &summary) {
+    const StrategySummary &best = summary.strategies[summary.best];
+    constexpr double level = 0.01;
+    std::vector<std::string> sentences = {fmt::format("On {} and {}, {} is the fastest: it reaches relMSE 1 % in {}.", record.scene, record.device,
+                                                      best.record->label, seconds_text(best.time_to(level).estimate))};
+    std::vector<const StrategySummary *> others;
+    for (const StrategySummary &s : summary.strategies)
+        if (&s != &best)
+            others.push_back(&s);
+    std::sort(others.begin(), others.end(), [](auto a, auto b) { return a->cost.estimate < b->cost.estimate; });
+    for (const StrategySummary *s : others)
+        sentences.push_back(
+            bounded(s->slower) && !s->slower.contains(1)
+                ? fmt::format("{} needs {}, {:.3g} times longer (95 % interval {:.3g} to {:.3g}).", s->record->label,
+                              seconds_text(s->time_to(level).estimate), s->slower.estimate, s->slower.low, s->slower.high)
+                : fmt::format("{} needs {}; the difference is not significant ({:.3g} times longer, 95 % interval {:.3g} to {:.3g}).", s->record->label,
+                              seconds_text(s->time_to(level).estimate), s->slower.estimate, s->slower.low, s->slower.high));
+    for (const StrategySummary &s : summary.strategies)
+        if (s.bias_p < bias_level(summary))
+            sentences.push_back(fmt::format("{} is biased: its mean luminance is {:+.2g} % off the reference (p = {:.1g}).", s.record->label,
+                                            100 * s.bias, s.bias_p));
+    return sentences;
+}
+
+std::string html_page(const SweepRecord &record, const SweepSummary &summary, const std::filesystem::path &folder) {
+    const std::string name = html_text(std::filesystem::path(record.scene).stem().string());
+    std::string html = head;
+    html += "<title>Opal sweep of " + name + "</title></head>\n<body>\n<h1>" + name + ": what each strategy costs and buys</h1>\n";
+    html += list_of(verdict(record, summary));
+    html += "<h2>Error against time</h2>\n<p>Both axes are logarithmic; bars are 95 % intervals. Lower left is better. Point at a mark for its figures.</p>\n";
+    html += convergence_plot(summary);
+    html += "<h2>Time to an error</h2>\n<p>Kernel seconds, extrapolated where no render took as long. Small print: 95 % intervals.</p>\n" + table(summary);
+    html += "<h2>What each gives in the same time</h2>\n<p>Under each image its error, |image &minus; reference| / reference: dark blue is none, yellow is as "
+            "large as the pixel itself. Click to enlarge.</p>\n";
+    html += pictures(summary, folder);
+    html += "<h2>How it was measured</h2>\n" + how_measured(record);
+    html += "<h2>To repeat it</h2>\n<pre>" + html_text(record.command) + "</pre>\n";
+    return html + tail;
+}
+
+} // namespace opal

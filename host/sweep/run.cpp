@@ -1,0 +1,185 @@
+#include "sweep/run.h"
+
+#include "base/error.h"
+#include "base/log.h"
+#include "sweep/reference.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace opal {
+
+namespace {
+
+constexpr double pilot_seconds = 0.5, pilots_share = 0.1; // of the budget, all pilots together
+constexpr unsigned reference_factor = 8;
+
+class Sweep {
+public:
+    Sweep(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates, SweepRecord &record)
+        : plan_(plan), device_(device), candidates_(candidates), record_(record) {}
+
+    void run() {
+        for (const Candidate &c : candidates_)
+            pilot(c);
+        best_ = &*std::min_element(candidates_.begin(), candidates_.end(),
+                                   [&](const Candidate &a, const Candidate &b) { return of(a).pilot_cost < of(b).pilot_cost; });
+        fit_budget();
+        make_reference();
+        for (const Candidate &c : candidates_)
+            points(c);
+        for (const Candidate &c : candidates_)
+            picture(c);
+    }
+
+private:
+    StrategyRecord &of(const Candidate &c) { return record_.strategy(c.name, c.label); }
+    void keep() { save(record_, plan_.folder); }
+    Measured compiled(const Candidate &c) { return Measured(device_, c, *plan_.sources, record_.lanes); }
+
+    void pilot(const Candidate &c) {
+        StrategyRecord &s = of(c);
+        if (s.pilot_cost > 0)
+            return;
+        s.independent = c.scene.strategy[AXIS_sampler] == CHOICE_sampler_independent;
+        Measured measured = compiled(c);
+        s.compile_seconds = measured.compile_seconds();
+        const double share = record_.budget > 0 ? pilots_share * record_.budget / double(candidates_.size()) : pilot_seconds;
+        const Pilot p = run_pilot(measured, plan_.seed, std::fmin(pilot_seconds, share));
+        s.pilot_cost = std::fmax(p.cost, 1e-30); // 0 would mean that there was none
+        s.pilot_seconds_a_sample = p.seconds_a_sample;
+        info(fmt::format("pilot   {}: {:.3g} ms a sample of each pixel, {:.3g} s to relMSE 1 %", s.label, 1e3 * p.seconds_a_sample, p.cost / 0.01));
+        keep();
+    }
+
+    const Point *found(const StrategyRecord &s, unsigned spp) const {
+        for (const Point &p : s.points)
+            if (p.spp == spp)
+                return &p;
+        return nullptr;
+    }
+
+    unsigned missing(const StrategyRecord &s, unsigned spp) const {
+        const Point *p = found(s, spp);
+        return record_.replicates - unsigned(p ? std::min<size_t>(p->replicates.size(), record_.replicates) : 0);
+    }
+
+    unsigned reference_spp() const { return plan_.reference_spp ? plan_.reference_spp : reference_factor * record_.spp.back(); }
+
+    // Kernel seconds of what is still to be measured, by the pilots.
+    double seconds_left() {
+        double seconds = record_.reference.made_by.empty() && !plan_.reference ? reference_spp() * of(*best_).pilot_seconds_a_sample : 0;
+        for (const Candidate &c : candidates_)
+            for (unsigned spp : record_.spp)
+                seconds += missing(of(c), spp) * double(spp) * of(c).pilot_seconds_a_sample;
+        return seconds;
+    }
+
+    // Leaves out the largest spp until the rest fits.
+    void fit_budget() {
+        double seconds = seconds_left();
+        for (; record_.budget > 0 && seconds > record_.budget; seconds = seconds_left()) {
+            if (record_.spp.size() == 1)
+                throw Error(fmt::format("--budget {:g}s: {} samples per pixel alone take about {:.3g} s; give more, or fewer strategies, "
+                                        "--replicates or --spp", record_.budget, record_.spp[0], seconds));
+            record_.left_out_spp.insert(record_.left_out_spp.begin(), record_.spp.back());
+            record_.spp.pop_back();
+        }
+        if (!record_.left_out_spp.empty())
+            warn(fmt::format("--budget {:g}s: leaves out {} samples per pixel", record_.budget, fmt::join(record_.left_out_spp, ", ")));
+        info(fmt::format("plan    {} strategies, {} samples per pixel, {} replicates: about {:.3g} s of kernel time", candidates_.size(),
+                         fmt::join(record_.spp, ", "), record_.replicates, seconds));
+    }
+
+    void make_reference() {
+        const std::filesystem::path file = plan_.folder / "reference.exr";
+        ReferenceRecord &r = record_.reference;
+        if (plan_.reference) {
+            reference_ = *plan_.reference;
+            r = {record_.reference_file, 0, 0, mean_luminance(reference_), 0, reference_.find("variance.R") != nullptr};
+        } else if (!r.made_by.empty() && std::filesystem::exists(file)) {
+            reference_ = read_exr(file);
+            if (r.spp < 2 * record_.spp.back())
+                warn(fmt::format("the reference of the sweep that is continued has {} samples per pixel only", r.spp));
+        } else {
+            Candidate candidate = *best_;
+            candidate.scene.strategy[AXIS_sampler] = CHOICE_sampler_independent;
+            Measured measured = compiled(candidate);
+            const unsigned half = (reference_spp() + 1) / 2;
+            const auto a = measured.render(half, plan_.seed, reference_first_a), b = measured.render(half, plan_.seed, reference_first_b);
+            const FilmStatistics sa = statistics_of(a.film), sb = statistics_of(b.film);
+            reference_ = reference_of(a.image, b.image);
+            write_exr(reference_, file);
+            r = {best_->name, 2 * half, a.seconds + b.seconds, (sa.mean_luminance + sb.mean_luminance) / 2,
+                 std::hypot(sa.stderr_luminance, sb.stderr_luminance) / 2, true};
+            info(fmt::format("reference by {}: {} samples per pixel, {:.3g} s", best_->label, r.spp, r.seconds));
+        }
+        keep();
+    }
+
+    void points(const Candidate &c) {
+        StrategyRecord &s = of(c);
+        std::unique_ptr<Measured> measured; // compiled where something is missing
+        for (unsigned spp : record_.spp) {
+            if (missing(s, spp) == 0)
+                continue;
+            if (!measured)
+                measured = std::make_unique<Measured>(compiled(c));
+            if (!found(s, spp))
+                s.points.push_back({spp, {}});
+            std::sort(s.points.begin(), s.points.end(), [](const Point &a, const Point &b) { return a.spp < b.spp; });
+            for (Point &p : s.points)
+                while (p.spp == spp && p.replicates.size() < record_.replicates) {
+                    const unsigned seed = plan_.seed + 1 + unsigned(p.replicates.size());
+                    const Measured::Rendered r = measured->render(spp, seed);
+                    const ErrorAgainst error = error_against(reference_, r.image);
+                    p.replicates.push_back({seed, r.seconds, error.mse, error.rel_mse, statistics_of(r.film).mean_luminance});
+                    keep();
+                }
+            const Point &done = *found(s, spp);
+            info(fmt::format("point   {}, {} spp: relMSE {:.3g} % in {:.3g} s", s.label, spp, 100 * done.replicates[0].rel_mse, done.replicates[0].seconds));
+        }
+    }
+
+    // All get the kernel time that the fastest strategy takes for the most samples.
+    double picture_seconds() {
+        double seconds = INFINITY;
+        for (const Candidate &c : candidates_)
+            seconds = std::fmin(seconds, of(c).points.back().replicates[0].seconds);
+        return seconds;
+    }
+
+    void picture(const Candidate &c) {
+        StrategyRecord &s = of(c);
+        const Point &last = s.points.back();
+        const unsigned spp = unsigned(std::fmax(1, std::round(last.spp * picture_seconds() / last.replicates[0].seconds)));
+        const std::filesystem::path stem = plan_.folder / ("equal_time_" + std::to_string(&s - record_.strategies.data() + 1));
+        if (s.shot.spp == spp && std::filesystem::exists(stem.string() + "_error.png"))
+            return;
+        const Measured::Rendered r = compiled(c).render(spp, plan_.seed + 1);
+        write_exr(r.image, stem.string() + ".exr");
+        write_png(r.image, stem.string() + ".png");
+        write_png(error_map(reference_, r.image), stem.string() + "_error.png");
+        s.shot = {spp, r.seconds, error_against(reference_, r.image).rel_mse, stem.filename().string()};
+        keep();
+    }
+
+    const SweepPlan &plan_;
+    const Device &device_;
+    const std::vector<Candidate> &candidates_;
+    SweepRecord &record_;
+    const Candidate *best_ = nullptr;
+    Image reference_;
+};
+
+} // namespace
+
+void run_sweep(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates, SweepRecord &record) {
+    for (const Candidate &c : candidates) // all rows now: references to them stay good
+        record.strategy(c.name, c.label);
+    Sweep(plan, device, candidates, record).run();
+}
+
+} // namespace opal
