@@ -41,7 +41,8 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"device", {"base", "cl", "flatten"}},
     {"render", {"base", "cl", "scene", "flatten", "device", "image", "stats"}},
     {"trust", {"base", "cl", "scene", "flatten", "device", "image", "stats", "render"}},
-    {"commands", {"base", "cl", "scene", "flatten", "device", "image", "stats", "render", "trust"}},
+    {"sweep", {"base", "cl", "scene", "flatten", "device", "image", "stats", "render", "trust"}},
+    {"commands", {"base", "cl", "scene", "flatten", "device", "image", "stats", "render", "trust", "sweep"}},
 };
 const std::set<std::string> without_opencl = {"base", "image", "stats", "scene", "flatten"};
 
