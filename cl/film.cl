@@ -40,8 +40,9 @@ static void film_store(global float *film, FilmPlace at, uint plane, uint low, S
     STORE(s.hi, hi);
     STORE(s.lo, lo);
     for (uint lane = 0; lane < LANES && at.first + lane < at.pixels; lane++) {
-        film[(ulong)plane * at.pixels + at.first + lane] = hi[lane];
-        film[(ulong)(plane + low) * at.pixels + at.first + lane] = lo[lane];
+        float high = (float)hi[lane]; // what doubles have beyond it goes into the low part
+        film[(ulong)plane * at.pixels + at.first + lane] = high;
+        film[(ulong)(plane + low) * at.pixels + at.first + lane] = (float)(lo[lane] + (hi[lane] - high));
     }
 }
 

@@ -28,6 +28,7 @@ const Command commands[] = {
     {"sweep", "Measure error against time of several strategies on a scene, as one HTML page", setup_sweep},
     {"test", "Run Nori's tests: means against references, samples against densities", setup_test},
     {"warp", "Draw samples of a warp, a BSDF or a light and hold them against their density", setup_warp},
+    {"extremes", "Stretch scenes over many decades and hold single against double precision", setup_extremes},
     {"probe-platform", hidden, setup_probe_platform},
 };
 

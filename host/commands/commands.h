@@ -11,6 +11,7 @@ using RunCommand = std::function<int()>; // the process's exit code; throws Erro
 
 // One function a file of this folder, named after it. Called for every command before the command line is parsed.
 RunCommand setup_devices(CLI::App &app);
+RunCommand setup_extremes(CLI::App &app);
 RunCommand setup_inspect(CLI::App &app);
 RunCommand setup_probe_platform(CLI::App &app); // hidden; see device/probe.h
 RunCommand setup_render(CLI::App &app);

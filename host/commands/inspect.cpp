@@ -91,7 +91,7 @@ void print_strategy(const SceneDescription &scene, int lanes) {
         fmt::print("  {:<18}{}\n", axes()[axis].name, axes()[axis].choices[strategy[axis]].name);
     fmt::print("  {:<18}{}\n", "max-depth", strategy.max_depth == no_limit ? "none" : std::to_string(strategy.max_depth));
     fmt::print("  {:<18}{}\n  {:<18}{:g}\n", "rr-depth", strategy.rr_depth, "rr-prob", strategy.rr_prob);
-    fmt::print("  {:<18}{}\n", "math", strategy.math == MathMode::fast ? "fast" : "precise");
+    fmt::print("  {:<18}{}\n", "math", name_of(strategy.math));
     fmt::print("  {:<18}{}{}\n", "lanes", lanes,
                strategy.lanes ? "" : " (auto: what a CPU device here would take; no device was asked, a GPU takes 1)");
     fmt::print("  {:<18}{}\n", "specialise", strategy.specialise ? "on" : "off");

@@ -32,7 +32,7 @@ const std::vector<NumberHelp> numbers = {
     {"max-depth", "N|none", "segments of the longest path: 1 shows lights, 2 adds direct light [the scene's, else none]"},
     {"rr-depth", "N", "Russian roulette from this many segments on [the scene's, else 3]"},
     {"rr-prob", "P", "--rr fixed: probability to survive, above 0 to 1 [the scene's, else 0.95]"},
-    {"math", "MODE", "precise, or fast: relaxed math and native functions [precise]"},
+    {"math", "MODE", "precise: single precision; fast: the same with relaxed math; double: double precision, where the device has it [precise]"},
     {"lanes", "N|auto", "paths that a work-item carries: 1, 4, 8, 16, or auto: what the device's vectors hold, 1 on a GPU [auto]"},
     {"specialise", "on|off", "compile what the scene needs, or one kernel that can do everything [on]"},
 };

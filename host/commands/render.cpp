@@ -58,7 +58,7 @@ void tell_what_runs(const SceneDescription &scene, const FlatScene &flat, const 
                      scene.spp, seed));
     info("how     " + strategy);
     info(fmt::format("device  {} (driver {}; {}), {} lane{}, math {}", pick.info.name, pick.info.driver, pick.reason, lanes,
-                     lanes == 1 ? "" : "s", scene.strategy.math == MathMode::fast ? "fast" : "precise"));
+                     lanes == 1 ? "" : "s", name_of(scene.strategy.math)));
 }
 
 constexpr double confidence = 0.95;
@@ -134,7 +134,7 @@ int run(const Options &o, const CLI::App &app) {
     seconds.load = load.seconds();
 
     const DevicePick pick = pick_device(o.device, list_devices());
-    const int lanes = scene.strategy.lanes ? scene.strategy.lanes : pick.info.native_lanes;
+    const int lanes = lanes_for(pick.info, scene.strategy.lanes, scene.strategy.math);
     Stopwatch bvh;
     const FlatScene flat = flatten(scene, lanes);
     seconds.bvh = bvh.seconds();
@@ -143,7 +143,7 @@ int run(const Options &o, const CLI::App &app) {
     const Device device = open_device(pick.info);
     const Sources sources = load_sources(o.scene);
     RenderOptions options;
-    options.build = {.lanes = lanes, .double_precision = false, .math = scene.strategy.math, .kernels = "kernels/render.cl"};
+    options.build = {.lanes = lanes, .math = scene.strategy.math, .kernels = "kernels/render.cl"};
     options.sources = &sources;
     Renderer renderer(device, flat, options);
     renderer.restart(o.seed);

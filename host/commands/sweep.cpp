@@ -74,7 +74,7 @@ SweepRecord fresh_record(const Options &o, const SceneDescription &scene, const 
     r.reference_file = o.reference;
     r.width = scene.camera.width;
     r.height = scene.camera.height;
-    r.lanes = scene.strategy.lanes ? scene.strategy.lanes : device.native_lanes;
+    r.lanes = lanes_for(device, scene.strategy.lanes, scene.strategy.math);
     r.command = command_line();
     r.integrator = scene.integrator_type;
     r.replicates = o.replicates;

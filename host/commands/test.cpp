@@ -53,7 +53,7 @@ int run(const Options &o) {
     const Device device = open_device(pick.info);
     const Sources sources = load_sources(o.scene);
     ConformanceOptions options;
-    options.build.lanes = strategy.lanes ? strategy.lanes : pick.info.native_lanes;
+    options.build.lanes = lanes_for(pick.info, strategy.lanes, strategy.math);
     options.build.math = strategy.math;
     options.sources = &sources;
     options.seed = o.seed;

@@ -32,9 +32,19 @@ std::string log_of(const cl::Program &program, const cl::Device &device) {
 
 } // namespace
 
+int lanes_for(const DeviceInfo &info, int wanted, MathMode math) {
+    const bool doubles = math == MathMode::double_precision;
+    if (doubles && !info.fp64)
+        throw Error(fmt::format("{} (driver {}): math double makes no sense: the device has no double precision (cl_khr_fp64); "
+                                "available: precise, fast", info.name, info.driver));
+    if (wanted)
+        return wanted;
+    return doubles && info.native_lanes > 4 ? info.native_lanes / 2 : info.native_lanes;
+}
+
 std::string program_text(const Features &features, const BuildOptions &options, const Sources &sources) {
     std::string text = fmt::format("#define LANES {}\n#define OPAL_DOUBLE {}\n#define OPAL_FAST {}\n", options.lanes,
-                                   int(options.double_precision), int(options.math == MathMode::fast));
+                                   int(options.math == MathMode::double_precision), int(options.math == MathMode::fast));
     for (const Feature &feature : features.list)
         text += fmt::format("#define OPAL_HAS_{} {}\n", feature.name, int(feature.on));
 #define OPAL_AXIS_DEFINE(axis, help) text += fmt::format("#define OPAL_AXIS_" #axis " {}\n", features.axes[AXIS_##axis]);

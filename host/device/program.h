@@ -10,10 +10,13 @@ namespace opal {
 
 struct BuildOptions {
     int lanes = 1;
-    bool double_precision = false;      // OPAL_DOUBLE
     MathMode math = MathMode::precise;
     std::string kernels = "kernels/render.cl"; // the file with the entry points, below cl/
 };
+
+// The width of a kernel on that device: `wanted`, or the device's own where that is 0, which doubles halve (4 at least).
+// Error where the device has no doubles and the math asks for them.
+int lanes_for(const DeviceInfo &info, int wanted, MathMode math);
 
 // The sources below cl/, embedded in the binary or read from --cl-dir.
 struct Sources {

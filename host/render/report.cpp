@@ -15,7 +15,7 @@ json strategy_json(const SceneDescription &scene) {
     j["rr-prob"] = s.rr_prob;
     j["rr-depth"] = s.rr_depth;
     j["max-depth"] = s.max_depth == no_limit ? json("none") : json(s.max_depth);
-    j["math"] = s.math == MathMode::fast ? "fast" : "precise";
+    j["math"] = name_of(s.math);
     j["specialise"] = s.specialise ? "on" : "off";
     return j;
 }

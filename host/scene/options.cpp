@@ -38,12 +38,8 @@ void set_rr_prob(Strategy &strategy, const std::string &value) {
 }
 
 void set_math(Strategy &strategy, const std::string &value) {
-    struct Row {
-        std::string name;
-        MathMode mode;
-    };
-    static const std::vector<Row> modes = {{"precise", MathMode::precise}, {"fast", MathMode::fast}};
-    strategy.math = find_row(modes, "math", value).mode;
+    const MathModeRow &row = find_row(math_modes(), "math", value);
+    strategy.math = static_cast<MathMode>(&row - math_modes().data());
 }
 
 void set_lanes(Strategy &strategy, const std::string &value) {

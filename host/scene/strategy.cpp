@@ -24,6 +24,13 @@ std::span<const Axis> axes() {
     return table;
 }
 
+std::span<const MathModeRow> math_modes() {
+    static const MathModeRow table[] = {{"precise", "single precision, as IEEE 754 has it"},
+                                        {"fast", "single precision, relaxed math and native functions"},
+                                        {"double", "double precision: the oracle that single precision is held against (opal extremes)"}};
+    return table;
+}
+
 int find_choice(int axis, std::string_view name) {
     const Axis &row = axes()[axis];
     const Choice &choice = find_row(row.choices, row.name, typed(std::string(name)));

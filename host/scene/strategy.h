@@ -24,7 +24,12 @@ struct Axis {
 std::span<const Axis> axes();                                // index = AXIS_* value
 int find_choice(int axis, std::string_view name);            // throws Error "unknown mis 'x'; available: balance, ..."
 
-enum class MathMode { precise, fast };
+enum class MathMode { precise, fast, double_precision };
+
+// As typed (--math), indexed by MathMode.
+struct MathModeRow { std::string name, help; };
+std::span<const MathModeRow> math_modes();
+inline const std::string &name_of(MathMode mode) { return math_modes()[static_cast<std::size_t>(mode)].name; }
 
 constexpr unsigned no_limit = 0xffffffffu;
 

@@ -15,7 +15,7 @@ SceneDescription with(SceneDescription scene, const Overrides &overrides) {
 
 Renderer renderer_of(const SceneDescription &scene, const Shot &shot) {
     RenderOptions options;
-    options.build.lanes = shot.lanes ? shot.lanes : device().info.native_lanes;
+    options.build.lanes = lanes_for(device().info, shot.lanes, shot.math);
     options.build.math = shot.math;
     options.sources = shot.sources;
     options.max_pass_samples = shot.max_pass_samples;

@@ -1,0 +1,92 @@
+// opal extremes: where does single precision end? Scenes stretched over many decades, single against double precision.
+#include "base/error.h"
+#include "base/log.h"
+#include "base/table.h"
+#include "commands/commands.h"
+#include "commands/options.h"
+#include "extremes/report.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <iostream>
+
+namespace opal {
+
+namespace {
+
+struct ExtremesOptions {
+    std::string device, json, plot, cl_dir;
+    std::vector<std::string> names;
+    extremes::How how;
+    bool quick = false, list = false;
+    CLI::Option *side = nullptr, *spp = nullptr;
+};
+
+std::vector<const extremes::Row *> chosen(const std::vector<std::string> &names) {
+    std::vector<const extremes::Row *> rows;
+    for (const std::string &name : names)
+        rows.push_back(&find_row(extremes::rows(), "row", name));
+    for (const extremes::Row &row : extremes::rows())
+        if (names.empty())
+            rows.push_back(&row);
+    return rows;
+}
+
+int run(ExtremesOptions o) {
+    if (o.list) {
+        for (const extremes::Row &row : extremes::rows())
+            std::cout << fmt::format("{:<18}{}\n", row.name, row.stretched);
+        return 0;
+    }
+    const auto rows = chosen(o.names);
+    for (const std::string &file : {o.json, o.plot})
+        if (!file.empty())
+            check_writable(file);
+    if (o.quick) {
+        o.how.side = o.side->count() ? o.how.side : 32;
+        o.how.spp = o.spp->count() ? o.how.spp : 32;
+    }
+    const DevicePick pick = pick_device(o.device, list_devices());
+    lanes_for(pick.info, 0, MathMode::double_precision); // refuses a device without doubles before anything is rendered
+    const Device device = open_device(pick.info);
+    const Sources sources = o.cl_dir.empty() ? Sources::embedded() : Sources::from_folder(o.cl_dir);
+    o.how.sources = &sources;
+    info(fmt::format("device  {} (driver {}; {}), {} x {} pixels, {} samples each, seed {}", pick.info.name, pick.info.driver, pick.reason, o.how.side,
+                     o.how.side, o.how.spp, o.how.seed));
+
+    std::vector<extremes::Sweep> sweeps;
+    nlohmann::json report = {{"device", pick.info.name}, {"driver", pick.info.driver}, {"side", o.how.side}, {"spp", o.how.spp}, {"seed", o.how.seed},
+                             {"version", OPAL_VERSION}, {"rows", nlohmann::json::array()}};
+    bool kept = true;
+    for (const extremes::Row *row : rows) {
+        sweeps.push_back(extremes::sweep(*row, device, o.how, o.quick ? 3 : 1));
+        std::cout << extremes::table_of(sweeps.back()) << std::flush;
+        report["rows"].push_back(extremes::json_of(sweeps.back()));
+        kept = kept && sweeps.back().kept;
+    }
+    if (!o.json.empty())
+        write_safely(o.json, report.dump(2) + "\n");
+    if (!o.plot.empty())
+        write_safely(o.plot, extremes::svg_of(sweeps));
+    return kept ? 0 : 1;
+}
+
+} // namespace
+
+RunCommand setup_extremes(CLI::App &app) {
+    auto o = std::make_shared<ExtremesOptions>();
+    app.add_option("--row", o->names, "What to stretch (--list); all of them where none is named");
+    app.add_flag("--list", o->list, "List what can be stretched");
+    app.add_flag("--quick", o->quick, "Every third value, small pictures");
+    o->side = app.add_option("--side", o->how.side, "Pixels along each side")->check(CLI::Range(1, 4096))->capture_default_str();
+    o->spp = app.add_option("--spp", o->how.spp, "Samples of each pixel")->check(CLI::Range(1, 1 << 24))->capture_default_str();
+    app.add_option("--seed", o->how.seed, "Of the random numbers")->capture_default_str();
+    app.add_option("--json", o->json, "All figures")->type_name("FILE");
+    app.add_option("--plot", o->plot, "SVG of error against parameter")->type_name("FILE");
+    app.add_option("--cl-dir", o->cl_dir, "Read the kernels from this copy of cl/")->type_name("FOLDER");
+    add_device_option(app, o->device);
+    return [o] { return run(*o); };
+}
+
+} // namespace opal
