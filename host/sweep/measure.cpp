@@ -18,7 +18,7 @@ void Measured::compile(unsigned spp) {
     renderer_.reset();
     flat_ = std::make_unique<FlatScene>(flatten(scene, lanes_));
     RenderOptions options;
-    options.build = {.lanes = lanes_, .double_precision = false, .math = scene.strategy.math, .kernels = "kernels/render.cl"};
+    options.build = {.lanes = lanes_, .math = scene.strategy.math, .kernels = "kernels/render.cl"};
     options.sources = &sources_;
     renderer_ = std::make_unique<Renderer>(device_, *flat_, options);
 }
