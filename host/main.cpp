@@ -29,6 +29,8 @@ const Command commands[] = {
     {"test", "Run Nori's tests: means against references, samples against densities", setup_test},
     {"warp", "Draw samples of a warp, a BSDF or a light and hold them against their density", setup_warp},
     {"extremes", "Stretch scenes over many decades and hold single against double precision", setup_extremes},
+    {"selftest", "Check that a device and its driver compute right", setup_selftest},
+    {"selftest-group", hidden, setup_selftest_group},
     {"probe-platform", hidden, setup_probe_platform},
 };
 

@@ -16,6 +16,8 @@ RunCommand setup_inspect(CLI::App &app);
 RunCommand setup_probe_platform(CLI::App &app); // hidden; see device/probe.h
 RunCommand setup_render(CLI::App &app);
 RunCommand setup_sweep(CLI::App &app);
+RunCommand setup_selftest(CLI::App &app);
+RunCommand setup_selftest_group(CLI::App &app); // hidden; in selftest.cpp
 RunCommand setup_test(CLI::App &app);
 RunCommand setup_warp(CLI::App &app);
 

@@ -20,5 +20,6 @@ void print_probe(const std::string &icd);
 
 // The binary to start; this process's own by default. Tests are not `opal`, so they say where it is.
 void set_probe_binary(const std::filesystem::path &binary);
+const std::filesystem::path &own_binary();
 
 } // namespace opal

@@ -28,6 +28,17 @@ Planes planes_of(std::span<const Vec3> points) {
     return planes;
 }
 
+Planes corner_numbers() {
+    constexpr float values[] = {0, 0x1p-24f, 0.25f, 0.5f, 1 - 0x1p-24f};
+    Planes numbers(2 * OPAL_PROBE_PAIRS, 125);
+    for (size_t i = 0; i < numbers.count; i++) {
+        numbers.at(0, i) = values[i % 5];
+        numbers.at(1, i) = values[i / 5 % 5];
+        numbers.at(2, i) = values[i / 25];
+    }
+    return numbers;
+}
+
 FlatScene scene_of_bsdfs(const std::vector<BsdfRecord> &bsdfs) {
     SceneDescription description;
     description.strategy.specialise = false;

@@ -66,4 +66,7 @@ FlatScene scene_of_bsdfs(const std::vector<BsdfRecord> &bsdfs);
 
 Planes planes_of(std::span<const Vec3> points);
 
+// Numbers at the corners and edges of the unit cube: each of 0, 2^-24, 1/4, 1/2, 1 - 2^-24 for the three first planes.
+Planes corner_numbers();
+
 } // namespace opal

@@ -105,8 +105,13 @@ Sampled sampled_bsdf(KernelProbe &probe, unsigned id, Vec3 wi) {
         std::copy_n(f.values.begin() + std::ptrdiff_t(EVAL_PDF * f.stride), points.size(), values.begin());
     };
     sampled.splits_u = {0};
-    if (const double width = lobe_width(bsdf); width > 0)
+    sampled.relative_error = 1e-4; // directions in single precision leave a narrow lobe no more
+    if (const double width = lobe_width(bsdf); width > 0) {
         add_peak(sampled, {-wi.x, -wi.y, wi.z}, width);
+        const std::vector<double> grazing = stats::splits_about(wi.z, wi.z / 2, -1, 1); // where 1 / h.wo is steep
+        if (bsdf.kind == BSDF_microfacet && wi.z < 0.2)
+            sampled.splits_u.insert(sampled.splits_u.end(), grazing.begin(), grazing.end());
+    }
     return sampled;
 }
 

@@ -1,0 +1,32 @@
+// selftest: what a device says of the records it shares with the host, and its math functions' values.
+#include "lanes.cl"
+#include "math.cl"
+#include "shared/features.h"
+#include "kernels/selftest_list.h"
+
+kernel void layout(global uint *out) {
+    uint i = 0;
+#define SIZE_OF(T) out[i++] = (uint)sizeof(T);
+    OPAL_RECORDS(SIZE_OF)
+#define OFFSET_OF(T, member) \
+    { \
+        T record; \
+        out[i++] = (uint)((private char *)&record.member - (private char *)&record); \
+    }
+    OPAL_MEMBERS(OFFSET_OF)
+}
+
+// Of each of MATH_COUNT functions the values at its `count` numbers, a multiple of LANES; one plane after the other.
+kernel void math_values(global const float *xs, uint count, global float *out) {
+    uint base = (uint)get_global_id(0) * LANES;
+    if (base >= count) return;
+    real1 lanes[LANES];
+    real x, value;
+#define EVALUATE(name, device, host, low, high, scale, limit) \
+    for (uint lane = 0; lane < LANES; lane++) lanes[lane] = xs[MATH_##name * count + base + lane]; \
+    x = LOAD(real, lanes); \
+    value = device; \
+    STORE(value, lanes); \
+    for (uint lane = 0; lane < LANES; lane++) out[MATH_##name * count + base + lane] = (float)lanes[lane];
+    OPAL_MATH(EVALUATE)
+}

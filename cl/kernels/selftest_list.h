@@ -1,0 +1,39 @@
+// What cl/kernels/selftest.cl computes, written once for host and device.
+#ifndef OPAL_SELFTEST_LIST_H
+#define OPAL_SELFTEST_LIST_H
+
+#include "bsdfs/list.h"
+#include "emitters/list.h"
+#include "shared/types.h"
+
+// Records whose sizes, and members whose offsets, must be the same on both sides.
+#define OPAL_RECORDS(RECORD) \
+    RECORD(BvhNode) RECORD(TriangleBlock) RECORD(Triangle) RECORD(TinyTriangle) RECORD(MeshRecord) RECORD(Settings) \
+    RECORD(BsdfRecord) RECORD(EmitterRecord) RECORD(LightTriangle)
+#define OPAL_MEMBERS(MEMBER) \
+    MEMBER(BvhNode, hi) MEMBER(BvhNode, child) MEMBER(TriangleBlock, id) MEMBER(Triangle, mesh) MEMBER(TinyTriangle, slot) \
+    MEMBER(MeshRecord, emitter) MEMBER(Settings, camera_forward) MEMBER(Settings, far_clip) MEMBER(Settings, root) \
+    MEMBER(Settings, rr_prob) MEMBER(Settings, light_energy) MEMBER(Settings, filter_c) MEMBER(Settings, choices) \
+    MEMBER(BsdfRecord, u.diffuse.use_cosine) MEMBER(BsdfRecord, u.dielectric.ext_ior) MEMBER(BsdfRecord, u.microfacet.kd) \
+    MEMBER(BsdfRecord, u.phong.n) MEMBER(EmitterRecord, area) MEMBER(EmitterRecord, v) MEMBER(EmitterRecord, probability) \
+    MEMBER(EmitterRecord, other) MEMBER(LightTriangle, probability)
+
+// Functions that rendering uses: MATH(name, on the device, on the host in double, lowest x, highest x, scale, limit).
+// The error is counted in ulp of the larger of |result| and scale; limit: what OpenCL C 1.2, table 7.4, allows in ulp, and
+// for our own functions what they promise. Where the lowest x is positive, x is spread over its exponents.
+#define OPAL_MATH(MATH) \
+    MATH(reciprocal, 1 / x, 1 / x, 1e-30, 1e30, 0, 2.5) \
+    MATH(sqrt, sqrt(x), sqrt(x), 1e-30, 1e30, 0, 3) \
+    MATH(rsqrt, rsqrt(x), 1 / sqrt(x), 1e-30, 1e30, 0, 2) \
+    MATH(exp, exp(x), exp(x), -80, 80, 0, 3) \
+    MATH(expm1, expm1(x), expm1(x), -1, 1, 0, 3) \
+    MATH(log, log(x), log(x), 1e-30, 1e30, 0, 3) \
+    MATH(log1p, log1p(x), log1p(x), -0.999, 1, 0, 2) \
+    MATH(pow_20, pow(x, (real)(20)), pow(x, 20), 0.1, 1, 0, 16) \
+    MATH(cos_2pi, cos_sin_2pi(x).x, cos(2 * pi * x), -1, 1, 1, 2) \
+    MATH(sin_2pi, cos_sin_2pi(x).y, sin(2 * pi * x), -1, 1, 1, 2)
+
+#define OPAL_MATH_ENUM(name, device, host, low, high, scale, limit) MATH_##name,
+enum { OPAL_MATH(OPAL_MATH_ENUM) MATH_COUNT };
+
+#endif
