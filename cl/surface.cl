@@ -41,7 +41,9 @@ static v3 shading_normal(const Scene *scene, uints triangle, real u, real v, v3 
 // start to be seen on the right side by triangle.cl: both are some roundings of the largest coordinate involved.
 static real surface_margin(v3 p0, v3 p1, v3 p2) {
     real largest = real_max(v3_largest(v3_abs(p0)), real_max(v3_largest(v3_abs(p1)), v3_largest(v3_abs(p2))));
-    return 24 * EPSILON * largest;
+    // Roundings of floats in either precision, for the scene's numbers are floats: the two triangles of a parallelogram do not lie in
+    // one plane but for them, and in double half of a lamp would hide behind the other half.
+    return 24 * R(5.9604645e-08) * largest;
 }
 
 // `found`: the lanes that hit something; the others get the values of slot 0.

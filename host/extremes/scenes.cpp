@@ -134,7 +134,7 @@ SceneDescription closed_walls() { return occlusion_of(room()); }
 
 SceneDescription open_plane() {
     return occlusion_of(moved(path_traced({made_of(quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), diffuse(0.5))},
-                                          camera({0.1, 0.6, -0.5}, {0.05, 0, 0.1}, 50), 1),
+                                          camera({0.1, 0.6, -0.5}, {0.05, 0, 0.1}, 30), 1),
                               turned));
 }
 
