@@ -10,6 +10,7 @@ namespace opal {
 using RunCommand = std::function<int()>; // the process's exit code; throws Error
 
 // One function a file of this folder, named after it. Called for every command before the command line is parsed.
+RunCommand setup_compare(CLI::App &app);
 RunCommand setup_devices(CLI::App &app);
 RunCommand setup_extremes(CLI::App &app);
 RunCommand setup_inspect(CLI::App &app);
@@ -19,6 +20,7 @@ RunCommand setup_sweep(CLI::App &app);
 RunCommand setup_selftest(CLI::App &app);
 RunCommand setup_selftest_group(CLI::App &app); // hidden; in selftest.cpp
 RunCommand setup_test(CLI::App &app);
+RunCommand setup_verify(CLI::App &app);
 RunCommand setup_warp(CLI::App &app);
 
 } // namespace opal

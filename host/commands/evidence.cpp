@@ -40,14 +40,6 @@ Image scaled(const Image &image, double factor) {
     return result;
 }
 
-Image difference(const Image &image, const Image &reference) {
-    Image result = scaled(image, 1);
-    for (Layer &layer : result.layers)
-        for (size_t i = 0; i < layer.values.size(); ++i)
-            layer.values[i] -= reference.get(layer.name).values[i];
-    return result;
-}
-
 void write_both(const std::filesystem::path &folder, const std::string &name, const Image &exr, const Image &png) {
     write_exr(exr, folder / (name + ".exr"));
     write_png(png, folder / (name + ".png"));
@@ -76,6 +68,20 @@ Image false_colour(const std::vector<float> &values, int width, int height, doub
     return image;
 }
 
+Image difference(const Image &image, const Image &reference) {
+    Image result = scaled(image, 1);
+    for (Layer &layer : result.layers)
+        for (size_t i = 0; i < layer.values.size(); ++i)
+            layer.values[i] -= reference.get(layer.name).values[i];
+    return result;
+}
+
+Image difference_colours(const Image &d) {
+    const auto sum = per_pixel(d, [](float r, float g, float b) { return r + g + b; });
+    auto size = per_pixel(d, [](float r, float g, float b) { return std::abs(r + g + b); });
+    return false_colour(sum, d.width, d.height, quantile(std::move(size), 0.99));
+}
+
 Image tile_map(const stats::TileTest &test, const std::vector<double> &values, int width, int height) {
     Image image{width, height, {}, {}};
     size_t tiles = size_t(test.columns) * size_t(test.rows);
@@ -100,10 +106,8 @@ void write_evidence(const std::filesystem::path &folder, const Image &image, con
     if (test.p.empty()) // they could not be compared
         return;
     const int w = image.width, h = image.height;
-    Image d = difference(image, reference);
-    auto sum = per_pixel(d, [](float r, float g, float b) { return r + g + b; });
-    auto size = per_pixel(d, [](float r, float g, float b) { return std::abs(r + g + b); });
-    write_both(folder, "difference", d, false_colour(sum, w, h, quantile(size, 0.99)));
+    const Image d = difference(image, reference);
+    write_both(folder, "difference", d, difference_colours(d));
     Image z = tile_map(test, test.z, w, h), p = tile_map(test, test.p, w, h);
     auto worst = per_pixel(z, [](float r, float g, float b) {
         return std::max({r, g, b}, [](float x, float y) { return std::abs(x) < std::abs(y); });

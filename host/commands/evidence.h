@@ -18,6 +18,11 @@ Image false_colour(const std::vector<float> &values, int width, int height, doub
 // The z or p of each tile spread over its pixels, layers R, G, B.
 Image tile_map(const stats::TileTest &test, const std::vector<double> &values, int width, int height);
 
+// image - reference, layers R, G, B.
+Image difference(const Image &image, const Image &reference);
+// The sum over R, G, B of such a difference, white to colour at the 99th percentile of its size (see false_colour).
+Image difference_colours(const Image &difference);
+
 // Writes into `folder`, made where it is missing: image, reference, difference, z and p as .exr and .png. The PNGs of
 // both images share one exposure (99 % of the reference's values lie below white); difference.png is the sum over R, G,
 // B, white to colour at the 99th percentile of its size; z.png shows the worst channel, full colour at |z| = 5; p.png

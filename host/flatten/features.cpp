@@ -152,6 +152,21 @@ Features find_features(const SceneDescription &description, const FlatScene &sce
     return features;
 }
 
+Features shared_features(const std::vector<FlatScene> &scenes) {
+    Features shared = scenes.at(0).features;
+    for (const FlatScene &scene : scenes) {
+        for (std::size_t i = 0; i < shared.list.size(); i++)
+            if (scene.features.list[i].on && !shared.list[i].on)
+                shared.list[i] = scene.features.list[i];
+        for (int axis = 0; axis < AXIS_COUNT; axis++)
+            if (scene.features.axes[axis] != shared.axes[axis]) {
+                shared.axes[axis] = -1;
+                shared.axis_reasons[axis] = "the strategies differ: decided at run time";
+            }
+    }
+    return shared;
+}
+
 bool Features::operator[](std::string_view name) const {
     for (const Feature &feature : list)
         if (feature.name == name)

@@ -1,0 +1,180 @@
+// opal compare: an image held against another.
+#include "base/error.h"
+#include "base/log.h"
+#include "commands/commands.h"
+#include "commands/evidence.h"
+#include "image/metrics.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <iostream>
+#include <limits>
+#include <optional>
+
+namespace opal {
+
+namespace {
+
+struct Options {
+    std::string image, reference, out, json;
+    double significance = 1e-3;
+    bool quiet = false;
+};
+
+bool is_variance(const std::string &layer) { return layer.starts_with("variance."); }
+
+// Layers that `a` holds and `b` does not, variances apart: where they are missing there is no test, but all else.
+std::string missing_layers(const Image &a, const Image &b) {
+    std::vector<std::string> names;
+    for (const Layer &layer : a.layers)
+        if (!is_variance(layer.name) && !b.find(layer.name))
+            names.push_back(layer.name);
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+void check_comparable(const Options &o, const Image &image, const Image &reference) {
+    if (image.width != reference.width || image.height != reference.height)
+        throw Error(fmt::format("the sizes differ: {} has {} x {} pixels, {} has {} x {}", o.image, image.width, image.height,
+                                o.reference, reference.width, reference.height));
+    for (const auto &[file, other, missing] : {std::tuple{o.reference, o.image, missing_layers(image, reference)},
+                                               std::tuple{o.image, o.reference, missing_layers(reference, image)}})
+        if (!missing.empty())
+            throw Error(fmt::format("the layers differ: {} has no {}, which {} holds", file, missing, other));
+}
+
+// Samples a pixel as opal render wrote them; 0 where the image does not say.
+double samples_of(const Image &image) {
+    const auto found = image.metadata.find("opal.spp");
+    try {
+        return found == image.metadata.end() ? 0 : std::stod(found->second);
+    } catch (const std::exception &) {
+        return 0;
+    }
+}
+
+// Why there is no test of the means; empty: there is one.
+std::string why_untested(const std::string &file, const Image &image) {
+    for (const char *name : {"variance.R", "variance.G", "variance.B"})
+        if (!image.find(name))
+            return fmt::format("{} holds no layer {} (opal render --layers variance)", file, name);
+    if (const double samples = samples_of(image); samples > 0 && samples < 2)
+        return fmt::format("{} has one sample a pixel and so no variance", file);
+    return "";
+}
+
+stats::Estimate estimated(const Image &image) {
+    const double samples = samples_of(image);
+    return estimate_of(image, samples, samples > 0 ? samples - 1 : std::numeric_limits<double>::infinity());
+}
+
+void write_map(const std::filesystem::path &exr, const Image &image, const Image &reference, const stats::TileTest *test) {
+    Image d = difference(image, reference);
+    const Image colours = difference_colours(d);
+    if (test)
+        for (Layer &layer : tile_map(*test, test->z, d.width, d.height).layers)
+            d.layers.push_back({"z." + layer.name, std::move(layer.values)});
+    write_exr(d, exr);
+    write_png(colours, std::filesystem::path(exr).replace_extension(".png"));
+}
+
+nlohmann::json json_of(const Metrics &m) {
+    return {{"mse", m.mse}, {"rmse", m.rmse}, {"rel_mse", m.rel_mse},
+            {"rel_mse_denominator", "reference^2 + rel_mse_floor"}, {"rel_mse_floor", m.rel_mse_floor},
+            {"mae", m.mae}, {"smape", m.smape}, {"smape_denominator", "(|image| + |reference|) / 2"},
+            {"psnr_db", m.psnr}, // infinite (equal images) is written as null
+            {"mean_difference", m.mean_difference}, {"max_difference", m.max_difference},
+            {"max_x", m.max_x}, {"max_y", m.max_y}, {"invalid_pixels", m.invalid}};
+}
+
+nlohmann::json json_of(const stats::TileTest &t, double significance) {
+    nlohmann::json j = {{"p_value", t.p_value}, {"significance", significance}, {"differ", t.rejected(significance)},
+                        {"tile_size", t.size}, {"columns", t.columns}, {"rows", t.rows}, {"z", t.z}};
+    for (const stats::TestResult &whole : t.whole)
+        j["whole_image_p"].push_back(whole.p_value);
+    const stats::Region &r = t.region;
+    if (r.tiles > 0)
+        j["region"] = {{"channel", std::string(1, "RGB"[r.channel])}, {"tiles", r.tiles}, {"x", r.box.x}, {"y", r.box.y},
+                       {"width", r.box.width}, {"height", r.box.height}, {"z", r.statistic},
+                       {"mean_image", r.mean_a}, {"mean_reference", r.mean_b}};
+    return j;
+}
+
+void tell(const Metrics &m) {
+    const auto line = [](const char *name, double value, const std::string &what) {
+        std::cout << fmt::format("{:<8}{:<13.6g}{}\n", name, value, what);
+    };
+    line("MSE", m.mse, "mean of d^2, d = A - B, over pixels and R, G, B");
+    line("RMSE", m.rmse, "its root");
+    line("relMSE", m.rel_mse, fmt::format("mean of d^2 / (B^2 + {:.3g}), the floor being (1 % of B's mean)^2", m.rel_mse_floor));
+    line("MAE", m.mae, "mean of |d|");
+    line("SMAPE", m.smape, "mean of |d| / ((|A| + |B|) / 2), from 0 to 2");
+    line("PSNR", m.psnr, "dB, of the images as the PNGs show them (sRGB curve, clamped to 0 to 1), peak 1");
+    line("mean d", m.mean_difference, "");
+    line("max |d|", m.max_difference, fmt::format("at pixel ({}, {})", m.max_x, m.max_y));
+    if (m.invalid)
+        warn(fmt::format("{} pixels are NaN or infinite in either image and are left out of the figures", m.invalid));
+}
+
+void tell(const stats::TileTest &t, double significance) {
+    std::cout << fmt::format("Welch, tiles of {0} x {0} pixels and the whole image, Sidak over all: {1}\n{2} at the level {3:g}\n",
+                             t.size, describe(t),
+                             t.rejected(significance) ? "The means differ" : "No difference of the means was found", significance);
+}
+
+int run(const Options &o) {
+    set_quiet(o.quiet);
+    if (!o.out.empty()) {
+        if (std::filesystem::path(o.out).extension() == ".png")
+            throw Error(fmt::format("--output {}: names the EXR file; the PNG goes beside it", o.out));
+        check_writable(o.out);
+        check_writable(std::filesystem::path(o.out).replace_extension(".png"));
+    }
+    if (!o.json.empty())
+        check_writable(o.json);
+    const Image image = read_exr(o.image), reference = read_exr(o.reference);
+    check_comparable(o, image, reference);
+
+    const Metrics metrics = compare_images(image, reference);
+    nlohmann::json report = json_of(metrics);
+    report.update({{"image", o.image}, {"reference", o.reference}});
+    if (!o.quiet)
+        tell(metrics);
+    std::string untested = why_untested(o.image, image);
+    if (untested.empty())
+        untested = why_untested(o.reference, reference);
+    std::optional<stats::TileTest> test;
+    if (untested.empty()) {
+        test = stats::tile_test(estimated(image), estimated(reference));
+        report["test"] = json_of(*test, o.significance);
+        if (!o.quiet)
+            tell(*test, o.significance);
+    } else {
+        report["untested"] = untested;
+        if (!o.quiet)
+            std::cout << "No test of the means: " << untested << "\n";
+    }
+    if (!o.out.empty())
+        write_map(o.out, image, reference, test ? &*test : nullptr);
+    if (!o.json.empty())
+        write_safely(o.json, report.dump(2) + "\n");
+    return 0;
+}
+
+} // namespace
+
+RunCommand setup_compare(CLI::App &app) {
+    auto o = std::make_shared<Options>();
+    app.add_option("A.exr", o->image, "The image")->required()->type_name("");
+    app.add_option("B.exr", o->reference, "The reference")->required()->type_name("");
+    app.add_option("-o,--output", o->out, "EXR for the difference A - B (and z.R, z.G, z.B of its tiles); a PNG goes beside it, "
+                                          "red where A is brighter, blue where B is");
+    app.add_option("--json", o->json, "File for the figures");
+    app.add_option("--significance", o->significance, "Level of the test that both have one mean")
+        ->check(CLI::Range(1e-12, 0.5))
+        ->capture_default_str();
+    app.add_flag("--quiet", o->quiet, "Print nothing but warnings and errors");
+    return [o] { return run(*o); };
+}
+
+} // namespace opal

@@ -1,0 +1,193 @@
+// opal verify: do all unbiased strategies agree on a scene?
+#include "base/log.h"
+#include "base/progress.h"
+#include "base/signals.h"
+#include "commands/agreement.h"
+#include "commands/commands.h"
+#include "commands/options.h"
+#include "flatten/features.h"
+#include "render/renderer.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <iostream>
+
+namespace opal {
+
+namespace {
+
+constexpr int default_side = 32; // pixels of the longer side: samples are worth more here than pixels
+constexpr unsigned least_spp = 32;
+constexpr unsigned strata = 1024; // of the stratified sampler; past them it starts over
+
+struct Options {
+    SceneOptions scene;
+    std::string device, strategies, out, json;
+    double budget = 60, significance = 1e-3;
+    int width = 0, height = 0;
+    unsigned seed = 0;
+    bool quiet = false;
+};
+
+class Clock {
+public:
+    explicit Clock(double budget) : budget_(budget) {}
+    double left() const { return budget_ - std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    double budget_;
+};
+
+// A box filter, so that pixels are independent, and few pixels, in the scene's aspect where no more than one side is given.
+void simplify_image(Camera &camera, const Options &o) {
+    const double aspect = double(camera.width) / camera.height;
+    const auto side = [](double pixels) { return std::max(1, int(std::lround(pixels))); };
+    int width = o.width, height = o.height;
+    if (!width && !height)
+        (aspect >= 1 ? width : height) = default_side;
+    camera.width = width ? width : side(height * aspect);
+    camera.height = height ? height : side(width / aspect);
+    camera.filter = Filter{};
+}
+
+std::vector<NamedStrategy> choose(const SceneDescription &scene, const Options &o) {
+    std::vector<NamedStrategy> strategies =
+        o.strategies.empty() ? sensible_strategies(scene) : named_strategies(scene, o.strategies);
+    if (strategies.size() < 2)
+        throw Error(fmt::format("nothing to hold against each other: {} strategy; --strategies names at least two, as in "
+                                "lighting=mis,mis=power;lighting=emitter",
+                                strategies.size()));
+    return strategies;
+}
+
+std::vector<FlatScene> flatten_all(SceneDescription scene, const std::vector<NamedStrategy> &strategies, int native_lanes,
+                                   bool own_kernels) {
+    std::vector<FlatScene> scenes;
+    for (const NamedStrategy &s : strategies) {
+        scene.strategy = s.strategy;
+        scenes.push_back(flatten(scene, s.strategy.lanes ? s.strategy.lanes : native_lanes));
+    }
+    // One kernel for all: compiling one for each would take most of the time, see shared_features.
+    const Features shared = shared_features(scenes);
+    for (size_t i = 0; !own_kernels && i < scenes.size(); i++)
+        scenes[i].features = shared;
+    return scenes;
+}
+
+// Whole passes, the last of which is meant to end after that many seconds; false when interrupted.
+bool render_for(Renderer &renderer, double seconds) {
+    const Clock clock(seconds);
+    unsigned end = least_spp;
+    while (true) {
+        if (!renderer.render(end, [](double, double) { return !interrupted(); }))
+            return false;
+        const double left = clock.left(), a_sample = (seconds - left) / end;
+        const double more = std::min(left, 4 * a_sample * end) / a_sample;
+        if (left < 0.1 * seconds || more < 1)
+            return true;
+        end += unsigned(more);
+    }
+}
+
+std::vector<StrategyRender> render_all(const Options &o, const std::vector<NamedStrategy> &strategies,
+                                       const std::vector<FlatScene> &scenes, const Device &device, const Clock &clock) {
+    const Sources sources = load_sources(o.scene);
+    std::vector<StrategyRender> renders;
+    Progress progress("verify", double(strategies.size()), "strategies");
+    for (size_t i = 0; i < strategies.size() && !interrupted(); i++) {
+        const Strategy &s = strategies[i].strategy;
+        RenderOptions options;
+        options.build.lanes = s.lanes ? s.lanes : device.info.native_lanes;
+        options.build.math = s.math;
+        options.sources = &sources;
+        Renderer renderer(device, scenes[i], options);
+        renderer.restart(o.seed + unsigned(i));
+        if (!render_for(renderer, std::max(0.0, clock.left() / double(strategies.size() - i))))
+            break;
+        const Film film = renderer.film();
+        renders.push_back({strategies[i], image_of(film, true), double(renderer.next_sample()), film.invalid, renderer.kernel_seconds()});
+        progress.update(double(i + 1));
+    }
+    return renders;
+}
+
+void leave_evidence(const std::filesystem::path &folder, const Agreement &agreement, const std::vector<StrategyRender> &renders,
+                    const nlohmann::json &report) {
+    const PairTest &worst = agreement.worst();
+    write_evidence(folder, renders[worst.a].image, renders[worst.b].image, worst.test);
+    for (size_t i = 0; i < renders.size(); i++)
+        write_exr(renders[i].image, folder / fmt::format("strategy_{}.exr", i + 1));
+    write_safely(folder / "verify.json", report.dump(2) + "\n");
+    std::cout << fmt::format("evidence: {} (image: strategy {}, reference: strategy {})\n", folder.string(), worst.a + 1, worst.b + 1);
+}
+
+int run(const Options &o) {
+    const Clock clock(0.97 * o.budget); // the rest is for the tests
+    set_quiet(o.quiet);
+    SceneDescription scene = load_scene(o.scene);
+    simplify_image(scene.camera, o);
+    scene.spp = strata;
+    const std::vector<NamedStrategy> strategies = choose(scene, o);
+    const std::filesystem::path folder = o.out.empty() ? "verify_" + scene.file.stem().string() : o.out;
+    if (!std::filesystem::is_directory(folder))
+        check_writable(folder);
+    if (!o.json.empty())
+        check_writable(o.json);
+
+    const DevicePick pick = pick_device(o.device, list_devices());
+    info(fmt::format("verify  {}: {} strategies, {} x {} pixels, {} in all, seed {}", scene.file.string(), strategies.size(),
+                     scene.camera.width, scene.camera.height, duration_text(o.budget), o.seed));
+    info(fmt::format("device  {} (driver {}; {})", pick.info.name, pick.info.driver, pick.reason));
+    const auto specialise = o.scene.overrides.find("specialise");
+    const bool own_kernels = specialise != o.scene.overrides.end();
+    const std::vector<FlatScene> scenes = flatten_all(scene, strategies, pick.info.native_lanes, own_kernels);
+    const Device device = open_device(pick.info);
+    watch_interrupts();
+    const std::vector<StrategyRender> renders = render_all(o, strategies, scenes, device, clock);
+    if (renders.size() < strategies.size()) {
+        warn(fmt::format("interrupted after {} of {} strategies: no verdict", renders.size(), strategies.size()));
+        return exit_interrupted;
+    }
+    if (clock.left() < -0.25 * o.budget)
+        warn(fmt::format("the budget of {} was exceeded by {:.0f} s: compiling, and {} samples a pixel of each at the least",
+                         duration_text(o.budget), -clock.left(), least_spp));
+
+    const Agreement agreement = test_agreement(renders, o.significance);
+    nlohmann::json report = json_of(agreement, renders);
+    report.update({{"scene", scene.file.string()}, {"device", pick.info.name}, {"driver", pick.info.driver}, {"seed", o.seed},
+                   {"width", scene.camera.width}, {"height", scene.camera.height}, {"budget", o.budget}});
+    std::cout << text_of(agreement, renders) << std::flush;
+    if (!agreement.holds() || !o.out.empty())
+        leave_evidence(folder, agreement, renders, report);
+    if (!o.json.empty())
+        write_safely(o.json, report.dump(2) + "\n");
+    return agreement.holds() ? 0 : 1;
+}
+
+} // namespace
+
+RunCommand setup_verify(CLI::App &app) {
+    auto o = std::make_shared<Options>();
+    add_scene_options(app, o->scene);
+    add_device_option(app, o->device);
+    app.add_option("--strategies", o->strategies,
+                   "Those to test, 'lighting=mis,mis=power;lighting=emitter' [all that make sense here, or where these are more "
+                   "than 12 a set in which each pair of choices occurs]");
+    app.add_option("--budget", o->budget, "Time for all strategies together: 60s, 2min, 1h")
+        ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"min", 60}, {"h", 3600}}))
+        ->check(CLI::PositiveNumber)
+        ->type_name("TIME")
+        ->default_str("60s");
+    app.add_option("--significance", o->significance, "Probability of a false alarm")->check(CLI::Range(1e-12, 0.5))->capture_default_str();
+    app.add_option("--width", o->width, "Pixels [32 on the longer side, the scene's aspect]")->check(CLI::Range(1, 65535));
+    app.add_option("--height", o->height, "Pixels")->check(CLI::Range(1, 65535));
+    app.add_option("--seed", o->seed, "Of the random numbers")->capture_default_str();
+    app.add_option("-o,--output", o->out, "Folder for the evidence [verify_SCENE, on disagreement only]");
+    app.add_option("--json", o->json, "File for the results");
+    app.add_flag("--quiet", o->quiet, "Print nothing but the verdict, warnings and errors");
+    return [o] { return run(*o); };
+}
+
+} // namespace opal

@@ -1,0 +1,142 @@
+// `opal verify` as its users meet it: green on right kernels, and biases planted in wrong ones are found.
+#include "scene/combinations.h"
+#include "support/mutants.h"
+#include "support/scratch.h"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+using namespace opal;
+using namespace opal::test;
+
+namespace {
+
+// A wall that a large light behind the camera shines on: little noise, whatever the strategy.
+const char *const scene_text = R"(<scene>
+  <integrator type="path_mis"><integer name="maxDepth" value="2"/></integrator>
+  <sampler type="independent"><integer name="sampleCount" value="4"/></sampler>
+  <camera type="perspective"><integer name="width" value="24"/><integer name="height" value="12"/></camera>
+  <mesh type="parallelogram">
+    <point name="origin" value="5 -5 3"/><vector name="u" value="-10 0 0"/><vector name="v" value="0 10 0"/>
+    <bsdf type="diffuse"><color name="albedo" value="0.5 0.5 0.5"/></bsdf>
+  </mesh>
+  <mesh type="parallelogram">
+    <point name="origin" value="-5 -5 -1"/><vector name="u" value="10 0 0"/><vector name="v" value="0 10 0"/>
+    <bsdf type="diffuse"><color name="albedo" value="0 0 0"/></bsdf>
+    <emitter type="area"><color name="radiance" value="1 2 3"/></emitter>
+  </mesh>
+</scene>
+)";
+
+struct Place {
+    ScratchFolder folder;
+    std::string scene = folder.write("wall.xml", scene_text).string();
+    Outcome verify(const std::string &arguments) const {
+        return run_shell("cd " + folder.path().string() + " && " + OPAL_BINARY + " verify " + scene + " --json out.json " + arguments);
+    }
+    nlohmann::json report() const { return nlohmann::json::parse(read_text(folder / "out.json")); }
+    // A copy of cl/ with that mistake, as --cl-dir takes it.
+    std::string wrong_kernels(const Mutant &mutant) const {
+        for (const auto &[name, text] : mutated(Sources::embedded(), mutant).files)
+            folder.write("cl/" + name, text);
+        return " --cl-dir cl";
+    }
+};
+
+SceneDescription load(const Place &place, const std::string &integrator) {
+    SceneDescription scene = load_scene(place.scene);
+    override_strategy(scene.strategy, {{"integrator", integrator}, {"max-depth", "none"}});
+    return scene;
+}
+
+} // namespace
+
+TEST_CASE("All sensible strategies of a right renderer agree", "[verify]") {
+    const Place place;
+    const Outcome outcome = place.verify("--budget 20s");
+    INFO(outcome.out << outcome.err);
+    CHECK(outcome.exit_code == 0);
+    CHECK_THAT(outcome.out, Catch::Contains("strategies agree") && Catch::Contains("Power: with 90 %"));
+    const auto report = place.report();
+    CHECK(report["agree"] == true);
+    CHECK(report["strategies"].size() >= 5);
+    CHECK(report["pairs"].size() == report["strategies"].size() * (report["strategies"].size() - 1) / 2);
+    CHECK(report["detectable_bias"].get<double>() < 0.02);
+    CHECK_FALSE(std::filesystem::exists(place.folder / "verify_wall"));
+}
+
+TEST_CASE("A bias of 2 % in one strategy is found, and the strategy is named", "[verify]") {
+    const Place place;
+    const Mutant mutant{"uniform sampling 2 % too bright", "bsdfs/diffuse.cl", "b.use_cosine ? (real)(1) : 2 * wo.z",
+                        "b.use_cosine ? (real)(1) : R(2.04) * wo.z"};
+    const Outcome outcome = place.verify("--budget 20s --strategies 'lighting=bsdf,hemisphere=cosine; lighting=bsdf,hemisphere=uniform; "
+                                         "lighting=emitter'" + place.wrong_kernels(mutant));
+    INFO(outcome.out << outcome.err);
+    CHECK(outcome.exit_code == 1);
+    CHECK_THAT(outcome.out, Catch::Contains("DISAGREE: 2 of 3 pairs") &&
+                                Catch::Contains("lighting=bsdf,hemisphere=uniform stands alone: 2 of its 2 pairs"));
+    CHECK(place.report()["agree"] == false);
+    for (const char *file : {"image.exr", "reference.exr", "z.png", "strategy_3.exr", "verify.json"})
+        CHECK(std::filesystem::exists(place.folder / "verify_wall" / file));
+}
+
+TEST_CASE("A bias of 2 % of light sampling is found by the strategies chosen by default", "[verify]") {
+    const Place place;
+    const Mutant mutant{"light samples 2 % too bright", "lighting.cl", "emitter_radiance(scene, id)), wo.z * per_density",
+                        "emitter_radiance(scene, id)), R(1.02) * wo.z * per_density"};
+    const Outcome outcome = place.verify("--budget 30s" + place.wrong_kernels(mutant));
+    INFO(outcome.out << outcome.err);
+    CHECK(outcome.exit_code == 1);
+    CHECK_THAT(place.report()["suspect"].get<std::string>(), Catch::Contains("lighting="));
+}
+
+TEST_CASE("Strategies that do not exist or make no sense are refused before rendering", "[verify]") {
+    const Place place;
+    const auto refused = [&](const std::string &strategies, const std::string &reason) {
+        const Outcome outcome = place.verify("--strategies '" + strategies + "'");
+        INFO(strategies << "\n" << outcome.err);
+        CHECK(outcome.exit_code == 1);
+        CHECK_THAT(outcome.err, Catch::Contains(reason));
+        CHECK_FALSE(std::filesystem::exists(place.folder / "out.json"));
+    };
+    refused("lighting=mis", "nothing to hold against each other: 1 strategy");
+    refused("lighting=mis;lighting=emiter", "strategy 'lighting=emiter': unknown lighting 'emiter'; did you mean 'emitter'?");
+    refused("lighting=mis;lihgting=bsdf", "unknown strategy option 'lihgting'");
+    refused("lighting=mis;mis=one-sample", "makes no sense");
+    refused("lighting=mis;lighting", "'lighting' is not AXIS=CHOICE");
+    refused("lighting=mis;lighting=mis,mis=balance", "the same as 'lighting=mis'");
+}
+
+TEST_CASE("The covering set holds every pair of choices that makes sense, once", "[verify]") {
+    const Place place;
+    const SceneDescription scene = load(place, "path_mis");
+    const auto all = sensible_strategies(scene, 100000), few = sensible_strategies(scene);
+    REQUIRE(all.size() > 30);
+    CHECK(few.size() < 16);
+    CHECK(few.front().strategy.choices == all.front().strategy.choices);
+    for (const NamedStrategy &one : all)
+        for (int a = 0; a < AXIS_COUNT; a++)
+            for (int b = 0; b < a; b++)
+                CHECK(std::any_of(few.begin(), few.end(), [&](const NamedStrategy &s) {
+                    return s.strategy[a] == one.strategy[a] && s.strategy[b] == one.strategy[b];
+                }));
+    for (const NamedStrategy &s : all) {
+        CHECK(s.strategy[AXIS_rr] != CHOICE_rr_off);            // paths without end
+        CHECK(s.strategy[AXIS_rr] != CHOICE_rr_throughput_eta); // nothing refracts
+        CHECK(s.strategy[AXIS_mis] != CHOICE_mis_one_sample);
+    }
+}
+
+TEST_CASE("Each integrator varies what it asks", "[verify]") {
+    const Place place;
+    CHECK(sensible_strategies(load(place, "ao"), 100).size() == 2 * 3);      // hemisphere, sampler
+    CHECK(sensible_strategies(load(place, "normals"), 100).size() == 3);     // sampler
+    CHECK(sensible_strategies(load(place, "whitted"), 100).size() == 3);     // sampler: one emitter, no triangles
+    // lighting bsdf (3 hemispheres), emitter, mis (3 heuristics x 3 hemispheres), each with 3 samplers
+    CHECK(sensible_strategies(load(place, "direct_lighting"), 100).size() == 3 * (3 + 1 + 9));
+    SceneDescription with_point = load(place, "direct_lighting");
+    with_point.point_lights.push_back({{0, 0, 0}, {1, 1, 1}, {}});
+    for (const NamedStrategy &s : sensible_strategies(with_point, 100))
+        CHECK(s.strategy[AXIS_lighting] != CHOICE_lighting_bsdf);
+}
