@@ -103,6 +103,7 @@ std::vector<StrategyRender> render_all(const Options &o, const std::vector<Named
         options.build.math = s.math;
         options.sources = &sources;
         Renderer renderer(device, scenes[i], options);
+        renderer.render(1); // drivers finish compiling now, not in the strategy's time
         renderer.restart(o.seed + unsigned(i));
         if (!render_for(renderer, std::max(0.0, clock.left() / double(strategies.size() - i))))
             break;
