@@ -62,12 +62,12 @@ std::vector<NamedStrategy> choose(const SceneDescription &scene, const Options &
     return strategies;
 }
 
-std::vector<FlatScene> flatten_all(SceneDescription scene, const std::vector<NamedStrategy> &strategies, int native_lanes,
+std::vector<FlatScene> flatten_all(SceneDescription scene, const std::vector<NamedStrategy> &strategies, const DeviceInfo &device,
                                    bool own_kernels) {
     std::vector<FlatScene> scenes;
     for (const NamedStrategy &s : strategies) {
         scene.strategy = s.strategy;
-        scenes.push_back(flatten(scene, s.strategy.lanes ? s.strategy.lanes : native_lanes));
+        scenes.push_back(flatten(scene, lanes_for(device, s.strategy.lanes, s.strategy.math)));
     }
     // One kernel for all: compiling one for each would take most of the time, see shared_features.
     const Features shared = shared_features(scenes);
@@ -99,7 +99,7 @@ std::vector<StrategyRender> render_all(const Options &o, const std::vector<Named
     for (size_t i = 0; i < strategies.size() && !interrupted(); i++) {
         const Strategy &s = strategies[i].strategy;
         RenderOptions options;
-        options.build.lanes = s.lanes ? s.lanes : device.info.native_lanes;
+        options.build.lanes = lanes_for(device.info, s.lanes, s.math);
         options.build.math = s.math;
         options.sources = &sources;
         Renderer renderer(device, scenes[i], options);
@@ -143,7 +143,7 @@ int run(const Options &o) {
     info(fmt::format("device  {} (driver {}; {})", pick.info.name, pick.info.driver, pick.reason));
     const auto specialise = o.scene.overrides.find("specialise");
     const bool own_kernels = specialise != o.scene.overrides.end();
-    const std::vector<FlatScene> scenes = flatten_all(scene, strategies, pick.info.native_lanes, own_kernels);
+    const std::vector<FlatScene> scenes = flatten_all(scene, strategies, pick.info, own_kernels);
     const Device device = open_device(pick.info);
     watch_interrupts();
     const std::vector<StrategyRender> renders = render_all(o, strategies, scenes, device, clock);
