@@ -38,19 +38,10 @@ namespace {
 
 double luminance(double r, double g, double b) { return 0.212671 * r + 0.715160 * g + 0.072169 * b; }
 
-// Mean over the pixels of variance / (mean^2 + floor), of single samples.
-double relative_variance(const Film &film) {
-    const FilmStatistics s = statistics_of(film);
-    const double floor = 0.01 * s.mean_luminance;
-    double sum = 0;
-    for (size_t p = 0; p < film.sum.size(); p++) {
-        const double n = film.count[p], y = luminance(film.sum[p][0], film.sum[p][1], film.sum[p][2]);
-        if (n < 2)
-            continue;
-        const double mean = y / n, scale = mean * mean + floor * floor;
-        sum += scale > 0 ? std::fmax(0, film.squares[p][3] - y * mean) / (n - 1) / scale : 0;
-    }
-    return sum / double(film.sum.size());
+double median_of(std::vector<double> values) {
+    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return values.size() % 2 ? *middle : (*middle + *std::max_element(values.begin(), middle)) / 2;
 }
 
 } // namespace
@@ -62,7 +53,37 @@ Pilot run_pilot(Measured &measured, unsigned seed, double seconds) {
         spp = unsigned(std::clamp(seconds / std::fmax(r.seconds, 1e-9) * spp, 2.0 * spp, 8.0 * spp));
         r = measured.render(spp, seed, pilot_first);
     }
-    return {relative_variance(r.film) * r.seconds / spp, r.seconds / spp};
+    Pilot pilot{spp, r.seconds / spp, {}, {}};
+    for (size_t p = 0; p < r.film.sum.size(); p++) {
+        const double n = std::fmax(2, r.film.count[p]), sum = luminance(r.film.sum[p][0], r.film.sum[p][1], r.film.sum[p][2]);
+        pilot.mean.push_back(sum / n);
+        pilot.variance.push_back(std::fmax(0, r.film.squares[p][3] - sum * sum / n) / (n - 1));
+    }
+    return pilot;
+}
+
+std::vector<double> pilot_costs(const std::vector<Pilot> &pilots) {
+    const size_t pixels = pilots[0].mean.size();
+    std::vector<double> median(pixels);
+    double floor = 0;
+    for (size_t p = 0; p < pixels; p++) {
+        std::vector<double> means;
+        for (const Pilot &pilot : pilots)
+            means.push_back(pilot.mean[p]);
+        median[p] = median_of(means);
+        floor += 0.01 * median[p] / double(pixels);
+    }
+    std::vector<double> costs;
+    for (const Pilot &pilot : pilots) {
+        double own = 0, apart = 0;
+        for (size_t p = 0; p < pixels; p++) {
+            const double scale = median[p] * median[p] + floor * floor, d = pilot.mean[p] - median[p];
+            own += scale > 0 ? pilot.variance[p] / scale : 0;
+            apart += scale > 0 ? pilot.spp * d * d / scale : 0;
+        }
+        costs.push_back(std::fmax(own, apart) / double(pixels) * pilot.seconds_a_sample);
+    }
+    return costs;
 }
 
 } // namespace opal

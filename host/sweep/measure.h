@@ -41,10 +41,16 @@ struct Interrupted {}; // by Ctrl-C
 constexpr unsigned pilot_first = 1u << 30, reference_first_a = 2u << 30, reference_first_b = 3u << 30;
 
 struct Pilot {
-    double cost = 0;             // mean over the pixels of the relative variance of one sample's luminance, times its seconds
-    double seconds_a_sample = 0; // of each pixel
+    unsigned spp = 0;
+    double seconds_a_sample = 0;        // of each pixel
+    std::vector<double> mean, variance; // of each pixel's luminance; the variance is of one sample
 };
 // A short render: about `seconds` of kernel time. Its samples are for deciding, and no part of any result.
 Pilot run_pilot(Measured &measured, unsigned seed, double seconds);
+
+// For each pilot the seconds to relMSE 1: mean over the pixels of the relative variance of one sample, times its seconds.
+// Relative to the median of all pilots, pixel by pixel. A strategy that has not yet met a small light sees no variance, but is
+// far from that median: the larger of both counts.
+std::vector<double> pilot_costs(const std::vector<Pilot> &pilots);
 
 } // namespace opal

@@ -56,7 +56,7 @@ template <class Format> std::string cell(const stats::Interval &i, Format format
     return "<td>" + format(i.estimate) + (known ? "<small>" + format(i.low) + " to " + format(i.high) + "</small>" : "") + "</td>";
 }
 
-std::string number(double x) { return fmt::format("{:.3g}", x); }
+std::string number(double x) { return fmt::format("{:.{}f}", x, x < 0.1 ? 4 : x < 1 ? 3 : x < 10 ? 2 : x < 100 ? 1 : 0); }
 
 double bias_level(const SweepSummary &summary) { return 0.01 / double(summary.strategies.size()); }
 
@@ -87,15 +87,16 @@ std::string embedded(const std::filesystem::path &png, const std::string &what) 
 }
 
 std::string pictures(const SweepSummary &summary, const std::filesystem::path &folder) {
-    std::string html = "<div class='grid'>\n";
+    std::string html = "<div class='grid'>\n<figure>" + embedded(folder / "reference.png", "reference") +
+                       "<figcaption><b>the reference</b>, what all of them tend to</figcaption></figure>\n";
     for (const StrategySummary &s : summary.strategies) {
         const Shot &shot = s.record->shot;
         if (shot.file.empty())
             continue;
         const std::string label = html_text(s.record->label);
         html += "<figure>" + embedded(folder / (shot.file + ".png"), label) + embedded(folder / (shot.file + "_error.png"), label + ": error");
-        html += fmt::format("<figcaption><b>{}</b>: {} samples per pixel in {:.3g} s, relMSE {:.3g} %</figcaption></figure>\n", label, shot.spp,
-                            shot.seconds, 100 * shot.rel_mse);
+        html += fmt::format("<figcaption><b>{}</b>: {} samples per pixel in {:.3g} s, relMSE {} %</figcaption></figure>\n", label, shot.spp,
+                            shot.seconds, number(100 * shot.rel_mse));
     }
     return html + "</div>\n";
 }
@@ -133,20 +134,20 @@ std::string list_of(const std::vector<std::string> &sentences) {
 std::vector<std::string> verdict(const SweepRecord &record, const SweepSummary &summary) {
     const StrategySummary &best = summary.strategies[summary.best];
     constexpr double level = 0.01;
-    std::vector<std::string> sentences = {fmt::format("On {} and {}, {} is the fastest: it reaches relMSE 1 % in {}.", record.scene, record.device,
-                                                      best.record->label, seconds_text(best.time_to(level).estimate))};
+    const double seconds = best.time_to(level).estimate;
+    std::vector<std::string> sentences = {fmt::format("On {} and {}, {} is the fastest: it {} relMSE 1 % in {}.", record.scene, record.device, best.record->label,
+                                                      seconds > best.points.back().seconds ? "would reach" : "reaches", seconds_text(seconds))};
     std::vector<const StrategySummary *> others;
     for (const StrategySummary &s : summary.strategies)
         if (&s != &best)
             others.push_back(&s);
     std::sort(others.begin(), others.end(), [](auto a, auto b) { return a->cost.estimate < b->cost.estimate; });
     for (const StrategySummary *s : others)
-        sentences.push_back(
-            bounded(s->slower) && !s->slower.contains(1)
-                ? fmt::format("{} needs {}, {:.3g} times longer (95 % interval {:.3g} to {:.3g}).", s->record->label,
-                              seconds_text(s->time_to(level).estimate), s->slower.estimate, s->slower.low, s->slower.high)
-                : fmt::format("{} needs {}; the difference is not significant ({:.3g} times longer, 95 % interval {:.3g} to {:.3g}).", s->record->label,
-                              seconds_text(s->time_to(level).estimate), s->slower.estimate, s->slower.low, s->slower.high));
+        sentences.push_back(fmt::format(fmt::runtime(bounded(s->slower) && !s->slower.contains(1)
+                                                         ? "{} needs {}, {} times longer (95 % interval {} to {})."
+                                                         : "{} needs {}; that is not significantly different ({} times longer, 95 % interval {} to {})."),
+                                        s->record->label, seconds_text(s->time_to(level).estimate), number(s->slower.estimate),
+                                        number(s->slower.low), number(s->slower.high)));
     for (const StrategySummary &s : summary.strategies)
         if (s.bias_p < bias_level(summary))
             sentences.push_back(fmt::format("{} is biased: its mean luminance is {:+.2g} % off the reference (p = {:.1g}).", s.record->label,

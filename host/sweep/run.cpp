@@ -22,8 +22,7 @@ public:
         : plan_(plan), device_(device), candidates_(candidates), record_(record) {}
 
     void run() {
-        for (const Candidate &c : candidates_)
-            pilot(c);
+        pilots();
         best_ = &*std::min_element(candidates_.begin(), candidates_.end(),
                                    [&](const Candidate &a, const Candidate &b) { return of(a).pilot_cost < of(b).pilot_cost; });
         fit_budget();
@@ -39,18 +38,26 @@ private:
     void keep() { save(record_, plan_.folder); }
     Measured compiled(const Candidate &c) { return Measured(device_, c, *plan_.sources, record_.lanes); }
 
-    void pilot(const Candidate &c) {
-        StrategyRecord &s = of(c);
-        if (s.pilot_cost > 0)
+    void pilots() {
+        if (std::all_of(candidates_.begin(), candidates_.end(), [&](const Candidate &c) { return of(c).pilot_cost > 0; }))
             return;
-        s.independent = c.scene.strategy[AXIS_sampler] == CHOICE_sampler_independent;
-        Measured measured = compiled(c);
-        s.compile_seconds = measured.compile_seconds();
         const double share = record_.budget > 0 ? pilots_share * record_.budget / double(candidates_.size()) : pilot_seconds;
-        const Pilot p = run_pilot(measured, plan_.seed, std::fmin(pilot_seconds, share));
-        s.pilot_cost = std::fmax(p.cost, 1e-30); // 0 would mean that there was none
-        s.pilot_seconds_a_sample = p.seconds_a_sample;
-        info(fmt::format("pilot   {}: {:.3g} ms a sample of each pixel, {:.3g} s to relMSE 1 %", s.label, 1e3 * p.seconds_a_sample, p.cost / 0.01));
+        std::vector<Pilot> all;
+        for (const Candidate &c : candidates_) {
+            StrategyRecord &s = of(c);
+            Measured measured = compiled(c);
+            all.push_back(run_pilot(measured, plan_.seed, std::fmin(pilot_seconds, share)));
+            s.independent = c.scene.strategy[AXIS_sampler] == CHOICE_sampler_independent;
+            s.compile_seconds = measured.compile_seconds();
+            s.pilot_seconds_a_sample = all.back().seconds_a_sample;
+        }
+        const std::vector<double> costs = pilot_costs(all);
+        for (size_t i = 0; i < costs.size(); i++) {
+            StrategyRecord &s = of(candidates_[i]);
+            s.pilot_cost = std::fmax(costs[i], 1e-30); // 0 would mean that there was none
+            info(fmt::format("pilot   {}: {:.3g} ms a sample of each pixel, about {:.3g} s to relMSE 1 %", s.label,
+                             1e3 * s.pilot_seconds_a_sample, s.pilot_cost / 0.01));
+        }
         keep();
     }
 
@@ -116,6 +123,8 @@ private:
                  std::hypot(sa.stderr_luminance, sb.stderr_luminance) / 2, true};
             info(fmt::format("reference by {}: {} samples per pixel, {:.3g} s", best_->label, r.spp, r.seconds));
         }
+        if (!std::filesystem::exists(plan_.folder / "reference.png"))
+            write_png(reference_, plan_.folder / "reference.png");
         keep();
     }
 

@@ -8,7 +8,7 @@ namespace opal {
 
 namespace {
 
-constexpr double width = 900, height = 500, left = 80, right = 250, top = 20, bottom = 60;
+constexpr double width = 930, height = 500, left = 110, right = 250, top = 20, bottom = 60;
 
 // A logarithmic axis from decades [low, high] to pixels [from, to].
 struct LogAxis {

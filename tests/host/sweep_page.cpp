@@ -1,0 +1,94 @@
+// The figures and the page of a sweep, from replicates whose truth is known.
+#include "base/base64.h"
+#include "sweep/page.h"
+#include "sweep/reference.h"
+#include "sweep/svg.h"
+
+#include <catch2/catch.hpp>
+
+#include <random>
+
+using namespace opal;
+
+namespace {
+
+// MSE = scale / spp and seconds = spp, both with 1 % of noise.
+StrategyRecord strategy_of(const std::string &label, double scale, unsigned seed) {
+    std::mt19937 engine(seed);
+    std::normal_distribution<double> noise(1, 0.01);
+    StrategyRecord s;
+    s.name = s.label = label;
+    for (unsigned spp : {4u, 16u, 64u}) {
+        s.points.push_back({spp, {}});
+        for (unsigned r = 0; r < 6; r++)
+            s.points.back().replicates.push_back({r, spp * noise(engine), scale / spp * noise(engine), 2 * scale / spp * noise(engine), 1 + 0.01 * (noise(engine) - 1)});
+    }
+    return s;
+}
+
+SweepRecord record_of() {
+    SweepRecord record;
+    record.scene = "a<b>.xml";
+    record.device = "a device";
+    record.reference = {"lighting=mis", 1000, 1, 1, 1e-5, true};
+    record.strategies = {strategy_of("slow & steady", 8, 1), strategy_of("quick", 2, 2)};
+    return record;
+}
+
+} // namespace
+
+TEST_CASE("Slope, cost, ratios and bias of replicates whose truth is known", "[sweep_page]") {
+    SweepRecord record = record_of();
+    const SweepSummary summary = summarise(record);
+    CHECK(summary.best == 1);
+    const StrategySummary &slow = summary.strategies[0], &quick = summary.strategies[1];
+    CHECK(slow.slope.estimate == Approx(-1).margin(0.02));
+    CHECK(slow.slope.high - slow.slope.low < 0.1);
+    CHECK(slow.time_to(0.01).estimate == Approx(1600).epsilon(0.05));
+    CHECK(slow.slower.estimate == Approx(4).epsilon(0.05));
+    CHECK(slow.slower.low < slow.slower.estimate);
+    CHECK(quick.efficiency.estimate == Approx(4).epsilon(0.05));
+    CHECK(quick.bias_p > 1e-3);
+    for (Replicate &r : record.strategies[1].points.back().replicates)
+        r.mean_luminance *= 1.02;
+    CHECK(summarise(record).strategies[1].bias_p < 1e-6);
+    CHECK_THAT(verdict(record, summarise(record)).back(), Catch::StartsWith("quick is biased: its mean luminance is +2"));
+}
+
+TEST_CASE("The page is one file whose text is escaped", "[sweep_page]") {
+    const SweepRecord record = record_of();
+    const std::string page = html_page(record, summarise(record), ".");
+    CHECK_THAT(page, Catch::Contains("slow &amp; steady needs ") && Catch::Contains("quick is the fastest") && Catch::Contains("a&lt;b&gt;"));
+    CHECK(page.find("<b>.xml") == std::string::npos);
+    for (const char *outside : {"http", "src=\"/", "<link", "@import", ">nan", " nan", "-nan", ">inf", " inf "}) {
+        const size_t found = page.find(outside);
+        INFO(page.substr(std::max<size_t>(std::min(found, page.size()), 60) - 60, 120));
+        CHECK(found == std::string::npos);
+    }
+}
+
+TEST_CASE("An error map's inputs: the reference's variance is subtracted without bias", "[sweep_page]") {
+    std::mt19937 engine(7);
+    std::normal_distribution<float> noise(0, 0.1f);
+    const auto image = [&](float scale) {
+        Image i{200, 200, {}, {}};
+        for (const char *channel : {"R", "G", "B"}) {
+            i.layers.push_back({channel, std::vector<float>(40000)});
+            for (float &v : i.layers.back().values)
+                v = 1 + scale * noise(engine);
+        }
+        return i;
+    };
+    const Image reference = reference_of(image(1), image(1)); // variance 0.005 of its mean
+    CHECK(error_against(reference, image(1)).mse == Approx(0.01).epsilon(0.03));
+    CHECK(error_against(reference, image(0)).mse == Approx(0).margin(2e-4));
+    CHECK(mean_luminance(reference) == Approx(1).epsilon(1e-3));
+}
+
+TEST_CASE("Base64 as RFC 4648 has it", "[sweep_page]") {
+    CHECK(base64("") == "");
+    CHECK(base64("f") == "Zg==");
+    CHECK(base64("fo") == "Zm8=");
+    CHECK(base64("foobar") == "Zm9vYmFy");
+    CHECK(base64("\xff\xfe\xfd") == "//79");
+}

@@ -1,0 +1,121 @@
+// `opal sweep` as its users meet it, on a scene of a few pixels: slopes, the page, resuming, refusals.
+#include "support/scratch.h"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+using namespace opal;
+using namespace opal::test;
+
+namespace {
+
+// A floor under a lamp, which BSDF samples find seldom.
+const char *const scene_text = R"(<scene>
+  <integrator type="path_mis"><integer name="maxDepth" value="2"/></integrator>
+  <camera type="perspective"><integer name="width" value="24"/><integer name="height" value="16"/></camera>
+  <mesh type="parallelogram">
+    <point name="origin" value="-3 -3 5"/><vector name="u" value="0 6 0"/><vector name="v" value="6 0 0"/>
+    <bsdf type="diffuse"><color name="albedo" value="0.8 0.8 0.8"/></bsdf>
+  </mesh>
+  <mesh type="parallelogram">
+    <point name="origin" value="-0.4 -0.4 4"/><vector name="u" value="0.8 0 0"/><vector name="v" value="0 0.8 0"/>
+    <emitter type="area"><color name="radiance" value="3 3 3"/></emitter>
+  </mesh>
+</scene>
+)";
+
+struct Place {
+    ScratchFolder folder;
+    std::string scene = folder.write("lamp.xml", scene_text).string();
+    Outcome sweep(const std::string &arguments) const {
+        return run_shell("cd " + folder.path().string() + " && " + OPAL_BINARY + " sweep " + scene + " " + arguments);
+    }
+    nlohmann::json record() const { return nlohmann::json::parse(read_text(folder / "out/sweep.json")); }
+};
+
+size_t count(const std::string &text, const std::string &word) {
+    size_t n = 0;
+    for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
+        n++;
+    return n;
+}
+
+} // namespace
+
+TEST_CASE("A sweep ranks strategies, tells it on one page, and goes on where it stopped", "[sweep]") {
+    const Place place;
+    const std::string what = "--strategies lighting=bsdf lighting=emitter --spp 16,64 --reference-spp 4096 -o out ";
+    const Outcome first = place.sweep(what + "--replicates 3");
+    INFO(first.err);
+    REQUIRE(first.exit_code == 0);
+    CHECK_THAT(first.out, Catch::Contains("lighting=emitter is the fastest") && Catch::Contains("lighting=bsdf needs "));
+    const nlohmann::json record = place.record();
+    REQUIRE(record["strategies"].size() == 2);
+    for (const auto &strategy : record["strategies"]) {
+        const double mse16 = strategy["points"][0]["replicates"][0]["mse"], mse64 = strategy["points"][1]["replicates"][0]["mse"];
+        CHECK(mse16 / mse64 == Approx(4).epsilon(0.5)); // 384 pixels: the error of an MSE is some 10 %
+    }
+    const std::string page = read_text(place.folder / "out/index.html");
+    CHECK(count(page, "data:image/png;base64,") == 5); // the reference, and of each an image and an error map
+    CHECK(count(page, "<circle") == 2 * 2 + 2);        // the points, the legend
+    CHECK(count(page, "http") == 0);                   // nothing from elsewhere
+    CHECK(count(read_text(place.folder / "out/sweep.csv"), "\n") == 1 + 4);
+
+    // More replicates: those that are there stay, to the last digit of their seconds; so does the reference.
+    const Outcome second = place.sweep(what + "--replicates 4");
+    INFO(second.err);
+    REQUIRE(second.exit_code == 0);
+    const nlohmann::json longer = place.record();
+    CHECK(longer["reference"] == record["reference"]);
+    for (size_t s : {0, 1})
+        for (size_t p : {0, 1}) {
+            nlohmann::json replicates = longer["strategies"][s]["points"][p]["replicates"];
+            REQUIRE(replicates.size() == 4);
+            replicates.erase(3);
+            CHECK(replicates == record["strategies"][s]["points"][p]["replicates"]);
+        }
+
+    const Outcome other = place.sweep(what + "--replicates 3 --width 12");
+    CHECK(other.exit_code == 1);
+    CHECK_THAT(other.err, Catch::Contains("holds another sweep (width was 24, is 12)"));
+}
+
+TEST_CASE("The slope of independent unbiased samples is -1 within its interval", "[sweep]") {
+    const Place place;
+    const Outcome outcome = place.sweep("--strategies lighting=emitter --spp 8,32,128 --replicates 8 --reference-spp 16384 -o out");
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    const nlohmann::json record = place.record();
+    double mean = 0, squares = 0;
+    for (int r = 0; r < 8; r++) { // least squares on three abscissas of equal distance: the outer two decide
+        const auto mse = [&](int p) { return record["strategies"][0]["points"][p]["replicates"][r]["mse"].get<double>(); };
+        const double slope = std::log(mse(2) / mse(0)) / std::log(16.0);
+        mean += slope / 8;
+        squares += slope * slope / 8;
+    }
+    const double error = std::sqrt((squares - mean * mean) / 7);
+    INFO("slope " << mean << " +- " << error);
+    CHECK(error < 0.05);
+    CHECK(std::abs(mean + 1) < 4.8 * error); // t with 7 degrees of freedom: p = 0.002
+}
+
+TEST_CASE("What makes no sense is refused before anything is rendered", "[sweep]") {
+    const Place place;
+    const auto refused = [&](const std::string &arguments, const std::string &reason) {
+        const Outcome outcome = place.sweep(arguments + " -o out");
+        INFO(arguments << "\n" << outcome.err);
+        CHECK(outcome.exit_code == 1);
+        CHECK_THAT(outcome.err, Catch::Contains(reason));
+        CHECK_FALSE(std::filesystem::exists(place.folder / "out"));
+    };
+    refused("--replicates 1", "an interval needs at least 2");
+    refused("--spp 0", "--spp 0");
+    refused("--strategies lighting=bdsf", "unknown lighting 'bdsf'; available: bsdf, emitter, mis");
+    refused("--strategies coarse", "neither a preset (course, all) nor a list");
+    refused("--strategies mis=one-sample", "makes no sense");
+    refused("--strategies lighting=mis lighting=mis", "named twice");
+    refused("--strategies lighting=mis integrator=ao", "estimate different images");
+    refused("--strategies lighting=mis lighting=mis,max-depth=5", "estimate different images");
+    refused("--budget soon", "is no duration");
+    refused("--reference none.exr", "none.exr");
+}
