@@ -11,6 +11,7 @@
 #include "render/report.h"
 #include "render/stop_rules.h"
 #include "stats/special.h"
+#include "sweep/measure.h"
 
 #include <fmt/format.h>
 
@@ -22,7 +23,7 @@ constexpr unsigned most_samples = 1u << 31; // where a stop rule alone decides
 
 struct Options {
     SceneOptions scene;
-    std::string device, out, json, layers, time, target_error;
+    std::string device, out, json, layers, time, target_error, strategy;
     unsigned spp = 0, width = 0, height = 0, seed = 0;
     bool no_png = false, quiet = false;
 };
@@ -113,6 +114,29 @@ void tell_result(const nlohmann::json &report, const Film &film) {
     warn(fmt::format("{} samples were NaN or infinite and are left out of the image; the first:{}", film.invalid, places));
 }
 
+// --strategy auto: sets the strategy of the sweep's preset `course` that costs least by short pilots, and says why. Their
+// samples have indices of their own and are in no image.
+nlohmann::json choose_strategy(SceneDescription &scene, const Device &device, const Sources &sources, int lanes, unsigned seed) {
+    constexpr double pilot_seconds = 0.25;
+    const std::vector<Candidate> candidates = parse_strategies(scene, {"course"}, {});
+    std::vector<Pilot> pilots;
+    for (const Candidate &c : candidates) {
+        Measured measured(device, c, sources, lanes);
+        pilots.push_back(run_pilot(measured, seed, pilot_seconds));
+    }
+    const std::vector<double> costs = pilot_costs(pilots);
+    const size_t best = size_t(std::min_element(costs.begin(), costs.end()) - costs.begin());
+    nlohmann::json report = {{"chosen", candidates[best].name}, {"candidates", nlohmann::json::array()}};
+    for (size_t i = 0; i < costs.size(); i++) {
+        const double times = costs[best] > 0 ? costs[i] / costs[best] : 1;
+        report["candidates"].push_back({{"strategy", candidates[i].name}, {"relative_cost", times}, {"pilot_spp", pilots[i].spp}});
+        info(fmt::format("auto    {}: {:.3g} times the best's time to equal error ({} pilot samples a pixel){}", candidates[i].label, times,
+                         pilots[i].spp, i == best ? ", taken" : ""));
+    }
+    scene.strategy = candidates[best].scene.strategy;
+    return report;
+}
+
 int run(const Options &o, const CLI::App &app) {
     set_quiet(o.quiet);
     const bool variance = o.layers == "variance";
@@ -135,13 +159,14 @@ int run(const Options &o, const CLI::App &app) {
 
     const DevicePick pick = pick_device(o.device, list_devices());
     const int lanes = lanes_for(pick.info, scene.strategy.lanes, scene.strategy.math);
+    const Device device = open_device(pick.info);
+    const Sources sources = load_sources(o.scene);
+    const nlohmann::json choice = o.strategy.empty() ? nlohmann::json() : choose_strategy(scene, device, sources, lanes, o.seed);
     Stopwatch bvh;
     const FlatScene flat = flatten(scene, lanes);
     seconds.bvh = bvh.seconds();
     tell_what_runs(scene, flat, pick, lanes, o.seed);
 
-    const Device device = open_device(pick.info);
-    const Sources sources = load_sources(o.scene);
     RenderOptions options;
     options.build = {.lanes = lanes, .math = scene.strategy.math, .kernels = "kernels/render.cl"};
     options.sources = &sources;
@@ -170,6 +195,8 @@ int run(const Options &o, const CLI::App &app) {
     const Film film = renderer.film();
     Image image = image_of(film, variance);
     nlohmann::json report = report_json(scene, pick.info, lanes, o.seed, film, seconds);
+    if (!choice.is_null())
+        report["auto"] = choice;
     if (rule.given())
         report["stop"] = stop_json(rule, stopped, film, seconds.render);
     add_metadata(image, report, command_line());
@@ -207,6 +234,8 @@ RunCommand setup_render(CLI::App &app) {
                    "  A pilot of other samples decides how many, so that the image stays unbiased")
         ->type_name("ERROR")
         ->excludes(time);
+    app.add_option("--strategy", o->strategy, "auto: short pilots find which way to sample light costs least on this scene and device")
+        ->check(CLI::IsMember({"auto"}));
     app.add_option("--width", o->width, "Pixels (default: the scene's; one of both keeps its aspect)")->check(CLI::Range(1, 65535));
     app.add_option("--height", o->height, "Pixels (default: the scene's)")->check(CLI::Range(1, 65535));
     app.add_option("--seed", o->seed, "Of the random numbers; the same seed gives the same image")->capture_default_str();
