@@ -122,7 +122,7 @@ TEST_CASE("bad overrides say what was possible", "[strategy]") {
         CHECK_THAT(override_error("rr-prob", bad), Catch::Contains("above 0 and at most 1, not " + std::string(bad)));
     CHECK(override_error("rr-prob", "nan") == "'nan' is not a finite number in single precision");
     CHECK(override_error("lanes", "2") == "unknown lanes '2'; available: auto, 1, 4, 8, 16");
-    CHECK(override_error("math", "exact") == "unknown math 'exact'; available: precise, fast");
+    CHECK(override_error("math", "exact") == "unknown math 'exact'; available: precise, fast, double");
     CHECK_THAT(override_error("specialise", ""), Catch::Contains("available: on, off"));
     CHECK_THAT(override_error("integrator", "path_mist"),
                Catch::StartsWith("unknown integrator 'path_mist'; did you mean 'path_mis'?"));
