@@ -50,7 +50,9 @@ std::string program_text(const Features &features, const BuildOptions &options, 
 #define OPAL_AXIS_DEFINE(axis, help) text += fmt::format("#define OPAL_AXIS_" #axis " {}\n", features.axes[AXIS_##axis]);
     OPAL_AXES(OPAL_AXIS_DEFINE)
 #undef OPAL_AXIS_DEFINE
-    return text + inline_all + sources.expand(options.kernels) + inline_end;
+    const bool specialised = features.axes[AXIS_integrator] >= 0; // the general kernel would take half a minute to compile
+    const std::string body = sources.expand(options.kernels);
+    return specialised ? text + inline_all + body + inline_end : text + body;
 }
 
 cl::Program build_program(const Device &device, const std::string &text, const BuildOptions &options, double *seconds) {
