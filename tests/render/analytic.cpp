@@ -22,3 +22,7 @@ TEST_CASE("A triangle light over a floor follows Lambert's formula", "[analytic]
 TEST_CASE("A point light follows the inverse square", "[analytic]") {
     require_all_pass(check_point_light(Sources::embedded(), test_seed(4)));
 }
+
+TEST_CASE("Interpolated normals point away from the middle", "[analytic]") {
+    require_all_pass(check_smooth_normals(Sources::embedded(), test_seed(5)));
+}

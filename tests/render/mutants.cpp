@@ -8,17 +8,56 @@ using namespace opal::test;
 
 namespace {
 
-const std::vector<Control> controls = {
-    // Furnace
-    {{"dropped cosine of uniform sampling", "bsdfs/diffuse.cl", "b.use_cosine ? (real)(1) : 2 * wo.z", "b.use_cosine ? (real)(1) : (real)(1)"}, "agreement", check_agreement},
-    {{"emitter counted twice at the first hit", "integrators/path.cl", "v3_mul(path->throughput, emitted(scene, path, s, hit, found))",
-      "v3_scale(v3_mul(path->throughput, emitted(scene, path, s, hit, found)), to_real(to_ints(path->depth == 1u) ? (uints)(2) : (uints)(1)))"},
-     "furnace", check_furnace},
+const std::string light_hit = "v3_mul(path->throughput, emitted(scene, path, s, hit, found))";
+const std::string first_only = "to_real(uints_pick(to_mask(path->depth == 1u), (uints)(2), (uints)(1)))";
+
+const std::vector<Control> furnaces = {
+    {{"emitter counted twice at the first hit", "integrators/path.cl", light_hit, "v3_scale(" + light_hit + ", " + first_only + ")"}, "furnace", check_furnace},
+    {{"MIS weight left out where a light is hit", "lighting.cl", "path->direct ? (real)(1) : mis_weight(scene, ratio)", "(real)(1)"}, "furnace", check_furnace},
     {{"roulette without division", "lighting.cl", "plays ? 1 / survival : (real)(1)", "(real)(1)"}, "furnace", check_furnace},
-    {{"roulette that divides by what it draws next", "lighting.cl", "return live & (!plays | (u < survival));", "return live & (!plays | (u < square(survival)));"},
-     "furnace", check_furnace},
-    {{"weight of the light's sample kept where the BSDF's is dropped", "lighting.cl", "radiance = v3_scale(radiance, path->direct ? (real)(1) : mis_weight(scene, ratio));", ";"},
-     "furnace", check_furnace},
+    {{"roulette by another probability than it divides by", "lighting.cl", "(u < survival)", "(u < square(survival))"}, "furnace", check_furnace},
+    {{"one segment too many", "integrators/path.cl", "to_mask(path->depth < scene->settings->max_depth)", "to_mask(path->depth <= scene->settings->max_depth)"}, "furnace", check_furnace},
+    {{"whitted's roulette without division", "integrators/whitted.cl", "(real)(1 / WHITTED_SURVIVAL)", "(real)(1)"}, "glass furnace", check_glass_furnace},
+    {{"eta inverted in the scaling of radiance", "bsdfs/dielectric.cl", "reflects ? (real)(1) : 1 / square(eta)", "reflects ? (real)(1) : square(eta)"}, "glass furnace", check_glass_furnace},
+    {{"rays leave on the normal's side always", "surface.cl", "copysign(s.margin, v3_dot(s.normal, d))", "s.margin"}, "glass furnace", check_glass_furnace},
+};
+
+const std::vector<Control> lights = {
+    {{"no cosine at the light", "lighting.cl", "real per_density = cosine * square(inverse_distance)", "real per_density = square(inverse_distance)"}, "triangle light", check_triangle_light},
+    {{"no cosine at the receiver", "lighting.cl", "emitter_radiance(scene, id)), wo.z * per_density)", "emitter_radiance(scene, id)), per_density)"}, "triangle light", check_triangle_light},
+    {{"distance instead of its square", "lighting.cl", "cosine * square(inverse_distance) /", "cosine * inverse_distance /"}, "triangle light", check_triangle_light},
+    {{"MIS weighs area against solid angle where a light is hit", "lighting.cl", "* square(hit.t) / (cosine * path->pdf)", "/ path->pdf"}, "triangle light", check_triangle_light},
+    {{"MIS weighs area against solid angle where a light is sampled", "lighting.cl", "bsdf_density * per_density)", "bsdf_density / light.density)"}, "triangle light", check_triangle_light},
+    {{"lights sampled from behind", "lighting.cl", "(v3_dot(light.facing, to_light) < 0)", "(v3_dot(light.facing, to_light) != 0)"}, "triangle light", check_triangle_light},
+    {{"lights seen from behind", "lighting.cl", "to_mask(s.emitter != OPAL_NONE) & (s.wi.z > 0)", "to_mask(s.emitter != OPAL_NONE)"}, "triangle light", check_triangle_light},
+    {{"one sample counted once", "integrators/direct_lighting.cl", "discrete ? (real)(1) : (real)(2)", "(real)(1)"}, "triangle light", check_triangle_light},
+    {{"a point light twice as dense", "emitters/point.cl", "s.density = 1;", "s.density = 2;"}, "point light", check_point_light},
+    {{"simple by the distance", "integrators/simple.cl", "cosine / distance2", "cosine * rsqrt(distance2)"}, "point light", check_point_light},
+    {{"weights of the normals exchanged", "surface.cl", "v3_mad(vertex_normal(scene, n1), u, v3_mad(vertex_normal(scene, n2), v,", "v3_mad(vertex_normal(scene, n1), v, v3_mad(vertex_normal(scene, n2), u,"},
+     "normals", check_smooth_normals},
+};
+
+const std::vector<Control> strategies = {
+    {{"shadow rays that end half-way", "lighting.cl", "Ray shadow = {start, v3_sub(end, start), (real)(0), (real)(1)};", "Ray shadow = {start, v3_sub(end, start), (real)(0), (real)(0.5f)};"},
+     "agreement", check_agreement},
+    {{"shadow rays that go on behind the light", "lighting.cl", "Ray shadow = {start, v3_sub(end, start), (real)(0), (real)(1)};", "Ray shadow = {start, v3_sub(end, start), (real)(0), (real)(2)};"},
+     "agreement", check_agreement},
+    {{"emitters' choice left out of sampled light", "lighting.cl", "(light.density * emitter_probability(scene, id))", "light.density"}, "agreement", check_agreement},
+    {{"light behind mirrors and glass taken for sampled", "lighting.cl", "path->direct = sample.discrete;", "path->direct = NO_LANES;"}, "agreement", check_agreement},
+    {{"light sampled at mirrors alone", "integrators/path.cl", "found & !bsdf_is_discrete(scene, s.bsdf)", "found & bsdf_is_discrete(scene, s.bsdf)"}, "agreement", check_agreement},
+    {{"occlusion without the uniform sample's cosine", "integrators/ao.cl", "cosine ? (real)(1) : 2 * wo.z", "(real)(1)"}, "agreement", check_agreement},
+};
+
+const std::vector<Control> films = {
+    {{"low parts of the sums dropped", "film.cl", "r.lo = lo - (r.hi - hi);", "r.lo = 0;"}, "film", check_film},
+    {{"what is not finite is kept", "film.cl", "x = valid ? x : (real)(0);", ""}, "film", check_film},
+    {{"infinity taken for finite", "film.cl", "to_mask((x & all) != all)", "to_mask((x & all) <= all)"}, "film", check_film},
+    {{"random numbers by the place in the pass", "kernels/render.cl", "LOAD(uints, samples), scene->settings->seed", "LOAD(uints, samples) - queue->pass_first, scene->settings->seed"}, "passes", check_passes},
+    {{"filters centred on the pixel's corner", "kernels/render.cl", "filter_1d(settings, offset.x - R(0.5)", "filter_1d(settings, offset.x"}, "filters", check_filters},
+    {{"Gaussian not lowered to 0 at its end", "camera.cl", " - exp(falloff * radius * radius)", ""}, "filters", check_filters},
+    {{"Mitchell's parts exchanged", "camera.cl", "t < 1 ? inner : outer", "t < 1 ? outer : inner"}, "filters", check_filters},
+    {{"filters that reach their own pixel alone", "kernels/render.cl", "int reach = (int)ceil(settings->filter_radius - 0.5f);", "int reach = 0;"}, "filters", check_filters},
+    {{"the image mirrored", "camera.cl", "(1 - 2 * sx)", "(2 * sx - 1)"}, "filters", check_filters},
 };
 
 } // namespace
@@ -30,4 +69,7 @@ TEST_CASE("A mutant whose text is not there is an error", "[mutants]") {
     CHECK_THROWS_AS(mutated(Sources::embedded(), {"nowhere", "maths.cl", "real", ""}), Error);
 }
 
-TEST_CASE("Every mutant of the rendering is killed", "[mutants]") { require_all_killed(controls, test_seed(30)); }
+TEST_CASE("Every mutant that furnaces show is killed", "[mutants]") { require_all_killed(furnaces, test_seed(30)); }
+TEST_CASE("Every mutant of the lights is killed", "[mutants]") { require_all_killed(lights, test_seed(31)); }
+TEST_CASE("Every mutant of the strategies is killed", "[mutants]") { require_all_killed(strategies, test_seed(32)); }
+TEST_CASE("Every mutant of the film is killed", "[mutants]") { require_all_killed(films, test_seed(33)); }

@@ -45,6 +45,15 @@ Group direct_group() {
              {{"integrator", "path_ems"}, {"max-depth", "2"}, {"triangle-choice", "uniform"}}}};
 }
 
+Group occlusion_group() {
+    SceneDescription scene = matte_gallery();
+    std::erase_if(scene.meshes, [](const Mesh &mesh) { // the ceiling
+        const auto *shape = std::get_if<Parallelogram>(&mesh.shape);
+        return shape && shape->origin.y == 1;
+    });
+    return {"occlusion", scene, 64, {{{"integrator", "ao"}, {"hemisphere", "uniform"}}, {{"integrator", "ao"}, {"hemisphere", "cosine"}}}};
+}
+
 // Means of the luminance, each strategy against every other.
 Findings agreement_of(const Group &group, const Sources &sources, unsigned seed) {
     Shot shot;
@@ -68,8 +77,10 @@ Findings agreement_of(const Group &group, const Sources &sources, unsigned seed)
 
 Findings check_agreement(const Sources &sources, unsigned seed) {
     Findings findings = agreement_of(path_group(), sources, seed);
-    const Findings direct = agreement_of(direct_group(), sources, seed + 100);
-    findings.insert(findings.end(), direct.begin(), direct.end());
+    for (const Group &group : {direct_group(), occlusion_group()}) {
+        const Findings more = agreement_of(group, sources, seed + unsigned(findings.size()));
+        findings.insert(findings.end(), more.begin(), more.end());
+    }
     return findings;
 }
 

@@ -76,6 +76,8 @@ Findings check_glass_furnace(const Sources &sources, unsigned seed) {
     const Film film = render_general(glass_furnace(), {{"lighting", "mis"}, {"rr", "off"}, {"max-depth", "2000"}}, 64, seed, sources);
     Findings findings{mean_is("radiance in glass", film, 2.25), exact("no invalid samples", film.invalid == 0)};
     const stats::Sample sample = sample_of(film);
+    const Film whitted = render_general(glass_furnace(), {{"integrator", "whitted"}}, 256, seed + 1, sources);
+    findings.push_back(mean_is("radiance in glass, whitted", whitted, 2.25));
     findings.push_back(exact("without noise", sample.variance < 1e-5)); // squares are rounded to float
     return findings;
 }
@@ -90,6 +92,10 @@ Findings check_triangle_light(const Sources &sources, unsigned seed) {
         const Film film = render_general(triangle_light(), how, 4096, seed + unsigned(findings.size()), sources);
         findings.push_back(mean_is("triangle light, " + text_of(how), film, triangle_light_truth(), 0));
     }
+    for (const char *lighting : {"bsdf", "emitter", "mis"}) {
+        const Film film = render_general(averted_light(), {{"lighting", lighting}}, 64, seed, sources);
+        findings.push_back(exact("a light that faces away sheds none, " + std::string(lighting), sample_of(film).mean == 0));
+    }
     return findings;
 }
 
@@ -100,6 +106,19 @@ Findings check_point_light(const Sources &sources, unsigned seed) {
         const Film film = render_general(point_light(), how, 4, seed, sources);
         findings.push_back(mean_is("point light, " + text_of(how), film, point_light_truth(), 0));
     }
+    // energy / (4 pi^2) cos / d^2: the point light's radiance for an albedo of 1.
+    SceneDescription simple = point_light();
+    simple.simple_light = {simple.point_lights[0].position, {80, 0, 0}};
+    const Film film = render_general(simple, {{"integrator", "simple"}}, 4, seed, sources);
+    findings.push_back(mean_is("integrator simple", film, point_light_truth(), 0));
+    return findings;
+}
+
+Findings check_smooth_normals(const Sources &sources, unsigned seed) {
+    const Film film = render_general(smooth_octahedron(), {}, 4, seed, sources);
+    Findings findings;
+    for (int channel = 0; channel < 3; channel++)
+        findings.push_back(mean_is("smooth normal's component " + std::to_string(channel), film, std::abs(smooth_normal()[channel]), channel));
     return findings;
 }
 

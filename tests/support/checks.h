@@ -30,11 +30,15 @@ using Check = std::function<Findings(const Sources &sources, unsigned seed)>;
 Findings check_furnace(const Sources &sources, unsigned seed);
 Findings check_glass_furnace(const Sources &sources, unsigned seed);
 Findings check_triangle_light(const Sources &sources, unsigned seed);
-Findings check_point_light(const Sources &sources, unsigned seed);
+Findings check_point_light(const Sources &sources, unsigned seed); // of `simple` too
+Findings check_smooth_normals(const Sources &sources, unsigned seed);
 
 // Estimators with one expectation, each held against the others: path tracing in a room of all materials; direct light in a matte
 // one, where direct_lighting, whitted and paths of two segments mean the same; ambient occlusion; Russian roulette.
 Findings check_agreement(const Sources &sources, unsigned seed);
+
+// The pixel filters: a constant picture, the sum of the weights, an edge whose blur is known.
+Findings check_filters(const Sources &sources, unsigned seed);
 
 // The film's sums of slots against double on the host, for samples of very different size.
 Findings check_film(const Sources &sources, unsigned seed);

@@ -137,6 +137,22 @@ double triangle_light_truth() {
     return floor_albedo / std::numbers::pi * light_red / 2 * std::abs(sum);
 }
 
+SceneDescription averted_light() {
+    SceneDescription scene = triangle_light();
+    std::swap(std::get<TriangleMesh>(scene.meshes[1].shape).positions[1], std::get<TriangleMesh>(scene.meshes[1].shape).positions[2]);
+    return scene;
+}
+
+Vec3 smooth_normal() { return normalize({0.5, 0.3, 0.2}); }
+
+SceneDescription smooth_octahedron() {
+    const Vec3 center{0.3, -0.2, 0.1};
+    SceneDescription scene = scene_of({made_of(octahedron(center, 0.7), bsdf_record(BSDF_diffuse))});
+    scene.strategy[AXIS_integrator] = CHOICE_integrator_normals;
+    scene.camera = camera({2, 1.5, 1}, center + Vec3{0.5, 0.3, 0.2} * 0.7, 4, 4, 1e-3);
+    return scene;
+}
+
 SceneDescription point_light() {
     SceneDescription scene = triangle_light();
     scene.meshes.pop_back();

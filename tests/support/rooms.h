@@ -27,6 +27,14 @@ SceneDescription furnace(double albedo, double emitted);
 // sample is 1.5^2.
 SceneDescription glass_furnace();
 
+// The same light with its back to the floor.
+SceneDescription averted_light();
+
+// An octahedron with a normal at each vertex that points away from its middle, so that the interpolated one does so everywhere.
+// The camera looks through a tiny angle at a point whose direction from the middle is smooth_normal().
+SceneDescription smooth_octahedron();
+Vec3 smooth_normal();
+
 // A triangle that emits (3, 2, 1) above a diffuse floor of albedo 0.8, one bounce, in an empty world. The camera looks at the
 // floor through a tiny angle about `triangle_light_point`, so that one number is the truth (triangle_light_truth).
 SceneDescription triangle_light();
