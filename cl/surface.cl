@@ -16,7 +16,14 @@ static v3 triangle_vertex(const Scene *scene, uints slot, uint corner) {
     return v3_of(GATHER(real, first, word, ), GATHER(real, (first + 8), word, ), GATHER(real, (first + 16), word, ));
 }
 
-static v3 vertex_normal(const Scene *scene, uints index) {
+static // Index of the triangles in `slot`.
+uints triangle_id(const Scene *scene, uints slot) {
+    global const uint *first = scene->blocks->id;
+    uints word = (slot >> 3) * (uint)(sizeof(TriangleBlock) / 4) + (slot & 7u);
+    return GATHER(uints, first, word, );
+}
+
+v3 vertex_normal(const Scene *scene, uints index) {
     uints word = index * 3u;
     return v3_of(GATHER(real, scene->normals, word, ), GATHER(real, (scene->normals + 1), word, ), GATHER(real, (scene->normals + 2), word, ));
 }
@@ -59,8 +66,7 @@ static Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask found) {
     s.normal = v3_scale(n, inverse_length);
     s.area = R(0.5) / inverse_length;
     s.margin = surface_margin(p0, p1, p2);
-    uints id_word = (slot >> 3) * (uint)(sizeof(TriangleBlock) / 4) + (slot & 7u);
-    uints triangle = GATHER(uints, scene->blocks->id, id_word, );
+    uints triangle = triangle_id(scene, slot);
     s.frame = frame_of(shading_normal(scene, triangle, hit.u, hit.v, s.normal));
     s.wi = to_local(s.frame, v3_scale(v3_neg(ray.d), rsqrt(v3_dot(ray.d, ray.d))));
     uints mesh = GATHER(uints, scene->triangles, triangle, .mesh);

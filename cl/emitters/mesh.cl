@@ -19,8 +19,7 @@ static EmitterSample emitter_mesh_sample(const Scene *scene, uints id, v2 point,
     EmitterSample s;
     s.p = v3_mad(e1, u, v3_mad(e2, v, p0));
     s.normal = v3_scale(n, inverse_length);
-    uints id_word = (slot >> 3) * (uint)(sizeof(TriangleBlock) / 4) + (slot & 7u);
-    s.facing = shading_normal(scene, GATHER(uints, scene->blocks->id, id_word, ), u, v, s.normal);
+    s.facing = shading_normal(scene, triangle_id(scene, slot), u, v, s.normal);
     s.density = CHOSEN(scene, triangle_choice, uniform) ? 2 * inverse_length / to_real(count)
                                                         : 1 / GATHER(real, scene->emitters, id, .area);
     s.margin = surface_margin(p0, p1, p2);

@@ -14,11 +14,11 @@ std::string build_flags(const BuildOptions &options) {
 }
 
 // A call that passes lanes passes them through memory, so every function is inlined: 10 to 15 % of the time of a render on
-// PoCL. GPUs' compilers do so unasked.
-constexpr const char *inline_all = "#if defined(__clang__) && __clang_major__ >= 7\n"
+// PoCL. GPUs' compilers do so unasked. A simulator that knows no inlined code (Oclgrind) is given OPAL_KEEP_CALLS.
+constexpr const char *inline_all = "#if defined(__clang__) && __clang_major__ >= 7 && !defined(OPAL_KEEP_CALLS)\n"
                                    "#pragma clang attribute push(__attribute__((always_inline)), apply_to = function)\n"
                                    "#endif\n";
-constexpr const char *inline_end = "\n#if defined(__clang__) && __clang_major__ >= 7\n"
+constexpr const char *inline_end = "\n#if defined(__clang__) && __clang_major__ >= 7 && !defined(OPAL_KEEP_CALLS)\n"
                                    "#pragma clang attribute pop\n"
                                    "#endif\n";
 
