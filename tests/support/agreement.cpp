@@ -22,7 +22,7 @@ struct Group {
 Group path_group() {
     return {"path",
             gallery(),
-            128,
+            384,
             {{{"lighting", "bsdf"}},
              {{"lighting", "bsdf"}, {"hemisphere", "cosine"}},
              {{"lighting", "emitter"}},
@@ -34,7 +34,7 @@ Group path_group() {
 Group direct_group() {
     return {"direct",
             matte_gallery(),
-            128,
+            512,
             {{{"integrator", "direct_lighting"}, {"lighting", "bsdf"}},
              {{"integrator", "direct_lighting"}, {"lighting", "emitter"}},
              {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "balance"}},
@@ -51,7 +51,7 @@ Group occlusion_group() {
         const auto *shape = std::get_if<Parallelogram>(&mesh.shape);
         return shape && shape->origin.y == 1;
     });
-    return {"occlusion", scene, 64, {{{"integrator", "ao"}, {"hemisphere", "uniform"}}, {{"integrator", "ao"}, {"hemisphere", "cosine"}}}};
+    return {"occlusion", scene, 1024, {{{"integrator", "ao"}, {"hemisphere", "uniform"}}, {{"integrator", "ao"}, {"hemisphere", "cosine"}}}};
 }
 
 // Means of the luminance, each strategy against every other.

@@ -40,13 +40,13 @@ double integral(const std::function<double(double)> &f, double from, double to) 
     return sum * (to - from) / steps;
 }
 
-constexpr int width = 16, height = 84, middle = width / 2;
+constexpr int width = 16, height = 404, middle = width / 2;
 
 // A wall that emits 1, seen head-on; its edge runs down the image at column `edge`, bright on the left.
 SceneDescription half_lit(double edge) {
     // Film x = (1 - 2 sx) tan(fov / 2) at distance 1, +x left: with a half angle of 45 degrees and depth 1 from 1 to -1.
     const double x = 1 - 2 * edge / width;
-    SceneDescription scene = scene_of({light(Parallelogram{{x, -50, 1}, {0, 100, 0}, {50, 0, 0}}, {1, 1, 1})});
+    SceneDescription scene = scene_of({light(Parallelogram{{x, -90, 1}, {0, 180, 0}, {50, 0, 0}}, {1, 1, 1})});
     scene.meshes[0].bsdf.record = bsdf_record(BSDF_diffuse, 0);
     scene.camera.width = width;
     scene.camera.height = height;
@@ -60,7 +60,7 @@ Film filtered(SceneDescription scene, const Filter &filter, unsigned spp, unsign
     scene.spp = spp;
     Shot shot;
     shot.sources = &sources;
-    return render(with(std::move(scene), {{"lighting", "bsdf"}, {"rr", "off"}}), spp, seed, shot);
+    return render(with(std::move(scene), {{"lighting", "bsdf"}, {"rr", "off"}, {"sampler", "stratified"}}), spp, seed, shot);
 }
 
 double value(const Film &film, int x, int y) {
@@ -80,7 +80,7 @@ template <class F> stats::Sample over_rows(const Film &film, F f) {
 
 Findings check_filters(const Sources &sources, unsigned seed) {
     Findings findings;
-    constexpr unsigned spp = 64;
+    constexpr unsigned spp = 256;
     for (const NamedFilter &f : filters()) {
         const Film lit = filtered(half_lit(width + 20), f.filter, spp, seed, sources);
         bool constant = lit.invalid == 0;

@@ -44,6 +44,7 @@ TriangleMesh octahedron(Vec3 center, double size) {
 SceneDescription room(std::vector<Mesh> meshes, int width, int height, bool black_lights) {
     for (Mesh &wall : walls())
         meshes.push_back(std::move(wall));
+    meshes.push_back(made_of(quad({-0.2, 0.8, -0.5}, {0, 0, 0.6}, {0.6, 0, 0}), bsdf_record(BSDF_diffuse))); // a screen near the light
     meshes.push_back(light(fan_light(), {6, 5, 4}));
     meshes.push_back(light(Parallelogram{{-0.98, -0.2, -0.3}, {0, 0.7, 0}, {0, 0, 0.8}}, {2, 4, 7}));
     for (Mesh &mesh : meshes)

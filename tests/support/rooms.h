@@ -46,7 +46,7 @@ double triangle_light_truth();
 SceneDescription point_light();
 double point_light_truth(); // albedo / pi * power / (4 pi) * cos / d^2
 
-// A closed room with each BSDF, each kind of area light (the mesh light's triangles differ 170-fold in area), shading normals: 43
+// A closed room with each BSDF, each kind of area light (the mesh light's triangles differ 170-fold in area), shading normals: 45
 // triangles, so that 4 lanes and more do without a tree.
 SceneDescription gallery(int width = 16, int height = 16);
 // The same without specular surfaces and with black lights: what light there is comes in one bounce or more.
