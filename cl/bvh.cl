@@ -1,6 +1,6 @@
 // bvh: closest and any hit of each lane. The largest triangles of a scene, or all of a tiny one, are listed: each is tested
-// against all lanes at once. The others are in a tree, which each lane walks alone, with the eight children or triangles of
-// a node in one vector; a lane whose ray misses the tree's box does not walk.
+// against all lanes at once. The others are in a tree. Its root's children are tested against all lanes at once, too; a lane that
+// meets some walks on alone, with the eight children or triangles of a node in one vector.
 // A walk's stack holds OPAL_STACK entries: flatten builds trees that never need more.
 
 // The axis of the largest component of d, and with it the shear of triangle.cl.
@@ -26,20 +26,47 @@ static real safe_inverse(real d) { return 1 / (fabs(d) < R(1e-30) ? copysign((re
 // All lanes' rays, laid out so that a loop can read one lane after the other.
 typedef struct {
     real1 o[3][LANES], inverse[3][LANES], shear_x[LANES], shear_y[LANES], scale_z[LANES], tmin[LANES], tmax[LANES];
-    int kz[LANES], live[LANES];
+    int kz[LANES];
+    real1 entry[8][LANES];                // where the ray enters the root's children
+    uint met_low[LANES], met_high[LANES]; // those that it meets, a byte each: 0 to 3, 4 to 7
+    int walking[LANES], walks;            // the lanes that meet any, and how many these are
 } LaneRays;
 
-static void store_rays(LaneRays *rays, Ray ray, mask live) {
+// Tests the root's children against all lanes as intersect_children does for one.
+static void meet_root(LaneRays *rays, global const BvhNode *root, Ray ray, v3 inverse, mask live) {
+    uints low = (uints)(0), high = (uints)(0);
+    for (int i = 0; i < 8 && root->child[i] != OPAL_NONE; i++) {
+        v3 lo = v3_of((real)(root->lo[0][i]), (real)(root->lo[1][i]), (real)(root->lo[2][i]));
+        v3 hi = v3_of((real)(root->hi[0][i]), (real)(root->hi[1][i]), (real)(root->hi[2][i]));
+        v3 a = v3_mul(v3_sub(lo, ray.o), inverse), b = v3_mul(v3_sub(hi, ray.o), inverse);
+        real enter = real_max(real_max(real_min(a.x, b.x), real_min(a.y, b.y)), real_max(real_min(a.z, b.z), ray.tmin));
+        real leave = real_min(real_min(real_max(a.x, b.x), real_max(a.y, b.y)), real_max(a.z, b.z)) * (1 + 8 * EPSILON);
+        mask met = live & (enter <= real_min(leave, ray.tmax));
+        uints byte = uints_pick(met, (uints)(1u << (8 * (i & 3))), (uints)(0));
+        if (i < 4) low = low | byte;
+        else high = high | byte;
+        STORE(enter, rays->entry[i]);
+    }
+    STORE(low, rays->met_low);
+    STORE(high, rays->met_high);
+    rays->walks = 0;
+    for (int lane = 0; lane < LANES; lane++) {
+        rays->walking[rays->walks] = lane;
+        rays->walks += (rays->met_low[lane] | rays->met_high[lane]) != 0;
+    }
+}
+
+static void store_rays(LaneRays *rays, const Scene *scene, Ray ray, mask live) {
+    v3 inverse = v3_of(safe_inverse(ray.d.x), safe_inverse(ray.d.y), safe_inverse(ray.d.z));
+    meet_root(rays, scene->nodes, ray, inverse, live);
+    if (rays->walks == 0) return;
     Shear s = shear_of(ray.d);
     STORE(ray.o.x, rays->o[0]); STORE(ray.o.y, rays->o[1]); STORE(ray.o.z, rays->o[2]);
-    STORE(safe_inverse(ray.d.x), rays->inverse[0]);
-    STORE(safe_inverse(ray.d.y), rays->inverse[1]);
-    STORE(safe_inverse(ray.d.z), rays->inverse[2]);
+    STORE(inverse.x, rays->inverse[0]); STORE(inverse.y, rays->inverse[1]); STORE(inverse.z, rays->inverse[2]);
     STORE(s.shear_x, rays->shear_x); STORE(s.shear_y, rays->shear_y); STORE(s.scale_z, rays->scale_z);
     STORE(ray.tmin, rays->tmin); STORE(ray.tmax, rays->tmax);
     ints kz = to_ints(s.x) ? (ints)(0) : to_ints(s.y) ? (ints)(1) : (ints)(2);
     STORE(kz, rays->kz);
-    STORE(to_ints(live), rays->live);
 }
 
 static LaneRay load_ray(const LaneRays *rays, int lane) {
@@ -72,13 +99,39 @@ static ulong intersect_children(global const BvhNode *node, const LaneRay *ray, 
     return bytes_of(*entry <= real8_min(leave, (real8)(ray->tmax)));
 }
 
-// Nearest hit of one ray before its tmax; leaves the outputs as they are where there is none.
-static void walk_closest(const Scene *scene, LaneRay ray, real1 *t_out, real1 *u_out, real1 *v_out, uint *slot_out) {
+// Nearest hit of lane `lane` before its tmax; leaves the outputs as they are where there is none.
+static void walk_closest(const Scene *scene, const LaneRays *rays, int lane, real1 *t_out, real1 *u_out, real1 *v_out, uint *slot_out) {
     uint stack[OPAL_STACK];
-    real1 entries[OPAL_STACK];
+    real1 entries[OPAL_STACK], entry[8];
     int top = 0;
-    uint child = scene->settings->root;
+    LaneRay ray = load_ray(rays, lane);
+    global const uint *children = scene->nodes->child;
+    ulong met = upsample(rays->met_high[lane], rays->met_low[lane]);
+    for (ulong m = met; m; m &= m - 1) entry[first_of(m)] = rays->entry[first_of(m)][lane];
     for (;;) {
+        uint child;
+        if (met) {
+            // On to the nearest child that is met; the others wait on the stack.
+            uint i = first_of(met);
+            real1 nearest = entry[i];
+            child = children[i];
+            for (met &= met - 1; met; met &= met - 1) {
+                i = first_of(met);
+                real1 e = entry[i];
+                uint other = children[i];
+                int nearer = e < nearest;
+                entries[top] = nearer ? nearest : e;
+                stack[top] = nearer ? child : other;
+                top++;
+                nearest = nearer ? e : nearest;
+                child = nearer ? other : child;
+            }
+        } else {
+            do {
+                if (top == 0) return;
+                child = stack[--top];
+            } while (entries[top] >= ray.tmax);
+        }
         if (child & OPAL_LEAF) {
             uint block = child & ~OPAL_LEAF;
             BlockTest test = intersect_block(scene->blocks + block, &ray);
@@ -100,52 +153,34 @@ static void walk_closest(const Scene *scene, LaneRay ray, real1 *t_out, real1 *u
                 }
             }
         } else {
-            // On to the nearest child that is met; the others wait on the stack.
             global const BvhNode *node = scene->nodes + child;
-            real8 entry;
-            ulong met = intersect_children(node, &ray, &entry);
-            if (met) {
-                real1 es[8];
-                vstore8(entry, 0, es);
-                uint i = first_of(met);
-                real1 nearest = es[i];
-                child = node->child[i];
-                for (met &= met - 1; met; met &= met - 1) {
-                    i = first_of(met);
-                    real1 e = es[i];
-                    uint other = node->child[i];
-                    int nearer = e < nearest;
-                    entries[top] = nearer ? nearest : e;
-                    stack[top] = nearer ? child : other;
-                    top++;
-                    nearest = nearer ? e : nearest;
-                    child = nearer ? other : child;
-                }
-                continue;
-            }
+            real8 enter;
+            met = intersect_children(node, &ray, &enter);
+            vstore8(enter, 0, entry);
+            children = node->child;
         }
-        do {
-            if (top == 0) return;
-            child = stack[--top];
-        } while (entries[top] >= ray.tmax);
     }
 }
 
-// Does anything lie between tmin and tmax of one ray?
-static int walk_any(const Scene *scene, LaneRay ray) {
+// Does anything lie between tmin and tmax of lane `lane`?
+static int walk_any(const Scene *scene, const LaneRays *rays, int lane) {
     uint stack[OPAL_STACK];
     int top = 0;
-    uint child = scene->settings->root;
+    LaneRay ray = load_ray(rays, lane);
+    global const uint *children = scene->nodes->child;
+    ulong met = upsample(rays->met_high[lane], rays->met_low[lane]);
     for (;;) {
+        for (; met; met &= met - 1) stack[top++] = children[first_of(met)];
+        if (top == 0) return 0;
+        uint child = stack[--top];
         if (child & OPAL_LEAF) {
             if (intersect_block(scene->blocks + (child & ~OPAL_LEAF), &ray).hits) return 1;
         } else {
             global const BvhNode *node = scene->nodes + child;
-            real8 entry;
-            for (ulong met = intersect_children(node, &ray, &entry); met; met &= met - 1) stack[top++] = node->child[first_of(met)];
+            real8 enter;
+            met = intersect_children(node, &ray, &enter);
+            children = node->child;
         }
-        if (top == 0) return 0;
-        child = stack[--top];
     }
 }
 
@@ -225,30 +260,22 @@ static mask tiny_any(const Scene *scene, Ray ray, mask live) {
     return blocked & live;
 }
 
-// The lanes whose ray meets the tree's box, as intersect_children has it.
-static mask meets_tree(global const Settings *settings, Ray ray) {
-    v3 inverse = v3_of(safe_inverse(ray.d.x), safe_inverse(ray.d.y), safe_inverse(ray.d.z));
-    v3 a = v3_mul(v3_sub(v3_from(settings->root_lo), ray.o), inverse), b = v3_mul(v3_sub(v3_from(settings->root_hi), ray.o), inverse);
-    real enter = real_max(real_max(real_min(a.x, b.x), real_min(a.y, b.y)), real_max(real_min(a.z, b.z), ray.tmin));
-    real leave = real_min(real_min(real_max(a.x, b.x), real_max(a.y, b.y)), real_max(a.z, b.z)) * (1 + 8 * EPSILON);
-    return enter <= real_min(leave, ray.tmax);
-}
-
 // The nearest hit of each live lane.
 static Hit closest_hit(const Scene *scene, Ray ray, mask live) {
     Hit hit = {ray.tmax, (real)(0), (real)(0), (uints)(OPAL_NONE)};
     if (OPAL_HAS_listed) hit = tiny_closest(scene, ray, live);
     if (!OPAL_HAS_tree) return hit;
     ray.tmax = hit.t;
-    live = live & meets_tree(scene->settings, ray);
-    if (!ANY(live)) return hit;
     LaneRays rays;
-    store_rays(&rays, ray, live);
+    store_rays(&rays, scene, ray, live);
+    if (rays.walks == 0) return hit;
     real1 t[LANES], u[LANES], v[LANES];
     uint slot[LANES];
     STORE(hit.t, t); STORE(hit.u, u); STORE(hit.v, v); STORE(hit.slot, slot);
-    for (int lane = 0; lane < LANES; lane++)
-        if (rays.live[lane]) walk_closest(scene, load_ray(&rays, lane), t + lane, u + lane, v + lane, slot + lane);
+    for (int i = 0; i < rays.walks; i++) {
+        int lane = rays.walking[i];
+        walk_closest(scene, &rays, lane, t + lane, u + lane, v + lane, slot + lane);
+    }
     Hit nearest = {LOAD(real, t), LOAD(real, u), LOAD(real, v), LOAD(uints, slot)};
     return nearest;
 }
@@ -258,12 +285,12 @@ static mask any_hit(const Scene *scene, Ray ray, mask live) {
     mask listed = NO_LANES;
     if (OPAL_HAS_listed) listed = tiny_any(scene, ray, live);
     if (!OPAL_HAS_tree) return listed;
-    live = live & (!listed) & meets_tree(scene->settings, ray);
-    if (!ANY(live)) return listed;
     LaneRays rays;
-    store_rays(&rays, ray, live);
+    store_rays(&rays, scene, ray, live & !listed);
+    if (rays.walks == 0) return listed;
     int blocked[LANES];
-    for (int lane = 0; lane < LANES; lane++) blocked[lane] = rays.live[lane] ? walk_any(scene, load_ray(&rays, lane)) : 0;
+    STORE((ints)(0), blocked);
+    for (int i = 0; i < rays.walks; i++) blocked[rays.walking[i]] = walk_any(scene, &rays, rays.walking[i]);
     ints found = LOAD(ints, blocked);
-    return listed | (to_mask(found != 0) & live);
+    return listed | to_mask(found != 0);
 }

@@ -16,14 +16,14 @@ static v3 triangle_vertex(const Scene *scene, uints slot, uint corner) {
     return v3_of(GATHER(real, first, word, ), GATHER(real, (first + 8), word, ), GATHER(real, (first + 16), word, ));
 }
 
-static // Index of the triangles in `slot`.
-uints triangle_id(const Scene *scene, uints slot) {
+// Index of the triangles in `slot`.
+static uints triangle_id(const Scene *scene, uints slot) {
     global const uint *first = scene->blocks->id;
     uints word = (slot >> 3) * (uint)(sizeof(TriangleBlock) / 4) + (slot & 7u);
     return GATHER(uints, first, word, );
 }
 
-v3 vertex_normal(const Scene *scene, uints index) {
+static v3 vertex_normal(const Scene *scene, uints index) {
     uints word = index * 3u;
     return v3_of(GATHER(real, scene->normals, word, ), GATHER(real, (scene->normals + 1), word, ), GATHER(real, (scene->normals + 2), word, ));
 }

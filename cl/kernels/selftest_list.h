@@ -12,7 +12,7 @@
     RECORD(BsdfRecord) RECORD(EmitterRecord) RECORD(LightTriangle)
 #define OPAL_MEMBERS(MEMBER) \
     MEMBER(BvhNode, hi) MEMBER(BvhNode, child) MEMBER(TriangleBlock, id) MEMBER(Triangle, mesh) MEMBER(TinyTriangle, slot) \
-    MEMBER(MeshRecord, emitter) MEMBER(Settings, camera_forward) MEMBER(Settings, far_clip) MEMBER(Settings, root) \
+    MEMBER(MeshRecord, emitter) MEMBER(Settings, camera_forward) MEMBER(Settings, far_clip) MEMBER(Settings, tiny_triangle_count) \
     MEMBER(Settings, rr_prob) MEMBER(Settings, light_energy) MEMBER(Settings, filter_c) MEMBER(Settings, choices) \
     MEMBER(BsdfRecord, u.diffuse.use_cosine) MEMBER(BsdfRecord, u.dielectric.ext_ior) MEMBER(BsdfRecord, u.microfacet.kd) \
     MEMBER(BsdfRecord, u.phong.n) MEMBER(EmitterRecord, area) MEMBER(EmitterRecord, v) MEMBER(EmitterRecord, probability) \

@@ -17,7 +17,8 @@ namespace opal {
 
 // A node of the 8-wide tree: the boxes of its children, one axis and side a row, and what they are.
 // An unused child is OPAL_NONE and has lo = +inf, hi = -inf: a slab test misses it that picks near and far by the
-// direction's signs (one that sorts the two distances would hit). A child is a node's index, or OPAL_LEAF | index of a block.
+// direction's signs (one that sorts the two distances would hit). Unused ones come last. A child is a node's index, or
+// OPAL_LEAF | index of a block. The first node is the root.
 typedef struct {
     float lo[3][8];
     float hi[3][8];
@@ -66,8 +67,6 @@ typedef struct {
     uint width, height;             // pixels
     uint spp;                       // samples of a pixel in the whole render (the strata of --sampler stratified)
     uint seed;
-    float root_lo[3], root_hi[3];   // box of the tree; empty (lo > hi) without one
-    uint root;                      // of the tree, as BvhNode::child
     uint tiny_triangle_count, tiny_vertex_count;
     uint emitter_count;
     uint max_depth;                 // segments of the longest path: 1 shows emitters, 2 adds direct light; OPAL_NONE: no limit
@@ -81,9 +80,8 @@ typedef struct {
     float filter_stddev;            // gaussian, pixels
     float filter_b, filter_c;       // mitchell
     int choices[AXIS_COUNT];        // CHOICE_* of each axis; read by the general kernel only
-    uint pad;
 } Settings;
-OPAL_SIZE_CHECK(Settings, 216);
+OPAL_SIZE_CHECK(Settings, 184);
 
 #ifdef __cplusplus
 }

@@ -3,6 +3,7 @@
 #include "flatten/collapse.h"
 #include "flatten/reinsertion.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace opal {
@@ -23,10 +24,18 @@ double half_area(const Box &box) {
 
 Bvh build_bvh(const TriangleSoup &soup) {
     if (soup.corners.empty())
-        return {{}, pack_blocks(soup), OPAL_LEAF};
+        return {{empty_node()}, pack_blocks(soup)};
     BinaryTree tree = build_binary_tree(soup);
     optimise_by_reinsertion(tree);
     return collapse(tree, soup);
+}
+
+BvhNode empty_node() {
+    BvhNode node;
+    std::fill_n(&node.lo[0][0], 3 * WIDTH, Box::INF);
+    std::fill_n(&node.hi[0][0], 3 * WIDTH, -Box::INF);
+    std::fill_n(node.child, WIDTH, OPAL_NONE);
+    return node;
 }
 
 TriangleBlock pack_block(const TriangleSoup &soup, const uint *ids, uint count) {
@@ -58,12 +67,10 @@ std::vector<TriangleBlock> pack_blocks(const TriangleSoup &soup) {
 }
 
 double sah_cost(const Bvh &bvh) {
-    if (bvh.root & OPAL_LEAF)
-        return BLOCK_COST;
     Box root = Box::empty();
     for (int child = 0; child < WIDTH; child++)
-        if (bvh.nodes[bvh.root].child[child] != OPAL_NONE)
-            root.add(child_box(bvh.nodes[bvh.root], child));
+        if (bvh.nodes[0].child[child] != OPAL_NONE)
+            root.add(child_box(bvh.nodes[0], child));
     double sum = NODE_COST * half_area(root);
     for (const BvhNode &node : bvh.nodes)
         for (int child = 0; child < WIDTH; child++)
@@ -83,9 +90,9 @@ int stack_need(const Bvh &bvh) {
             if (!(bvh.nodes[i].child[child] & OPAL_LEAF))
                 need[i] = std::max(need[i], need[bvh.nodes[i].child[child]]);
         }
-        need[i] += children - 1;
+        need[i] += std::max(children - 1, 0);
     }
-    return bvh.root & OPAL_LEAF ? 0 : need[bvh.root];
+    return need[0];
 }
 
 } // namespace opal

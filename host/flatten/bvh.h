@@ -15,9 +15,8 @@ struct TriangleSoup {
 };
 
 struct Bvh {
-    std::vector<BvhNode> nodes;        // parents before their children
+    std::vector<BvhNode> nodes;        // parents before their children; the first is the root, and always there
     std::vector<TriangleBlock> blocks; // never empty
-    uint root = OPAL_LEAF;             // as BvhNode::child
 };
 
 // Cost of visiting a node and of testing a block, in the units of sah_cost.
@@ -25,7 +24,8 @@ constexpr double NODE_COST = 1, BLOCK_COST = 1;
 
 // Binary tree by the surface area heuristic, improved by reinsertion, collapsed to 8 children by dynamic programming
 // (Ylitie, Karras, Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", section 3.2).
-// Every triangle is in one place of one block; stack_need(bvh) < OPAL_STACK. Without triangles: one block of none.
+// Every triangle is in one place of one block; stack_need(bvh) < OPAL_STACK. Without triangles: a root without children, one
+// block of none.
 Bvh build_bvh(const TriangleSoup &soup);
 
 // Blocks in the order of the triangles, for scenes that need no tree; one empty block at least.

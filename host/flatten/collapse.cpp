@@ -35,7 +35,9 @@ public:
     }
 
     Bvh emit() {
-        bvh.root = emit(0, OPAL_STACK - 1);
+        const uint root = emit(0, OPAL_STACK - 1);
+        if (root & OPAL_LEAF)
+            set_child(add_node(), 0, tree.nodes[0].box, root);
         return std::move(bvh);
     }
 
@@ -158,12 +160,8 @@ private:
         return std::span(tree.references).subspan(begin, end - begin);
     }
 
-    // A node without children.
     uint add_node() {
-        BvhNode &node = bvh.nodes.emplace_back();
-        std::fill_n(&node.lo[0][0], 3 * WIDTH, Box::INF);
-        std::fill_n(&node.hi[0][0], 3 * WIDTH, -Box::INF);
-        std::fill_n(node.child, WIDTH, OPAL_NONE);
+        bvh.nodes.push_back(empty_node());
         return uint(bvh.nodes.size() - 1);
     }
 

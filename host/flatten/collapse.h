@@ -12,6 +12,9 @@ constexpr int WIDTH = 8; // children of a node
 // factor of 8. May reorder tree.references.
 Bvh collapse(BinaryTree &tree, const TriangleSoup &soup);
 
+// A node without children.
+BvhNode empty_node();
+
 // The block of triangles ids[0 .. count-1], count <= BLOCK_SIZE. Unused places are the first triangle's first corner
 // thrice.
 TriangleBlock pack_block(const TriangleSoup &soup, const uint *ids, uint count);

@@ -32,22 +32,6 @@ void rename(std::vector<TriangleBlock> &blocks, const std::vector<uint> &ids) {
             id = id == OPAL_NONE ? OPAL_NONE : ids[id];
 }
 
-void fill_root_box(const Bvh &bvh, Settings &settings) {
-    Box box = Box::empty();
-    if (bvh.root & OPAL_LEAF) {
-        const TriangleBlock &block = bvh.blocks[bvh.root & ~OPAL_LEAF];
-        for (int place = 0; place < 8; place++)
-            for (int corner = 0; corner < 3 && block.id[place] != OPAL_NONE; corner++)
-                box.add(std::array{block.vertex[corner][0][place], block.vertex[corner][1][place], block.vertex[corner][2][place]});
-    } else {
-        const BvhNode &node = bvh.nodes[bvh.root];
-        for (int child = 0; child < 8; child++) // an unused one is empty
-            box.add(Box{{node.lo[0][child], node.lo[1][child], node.lo[2][child]}, {node.hi[0][child], node.hi[1][child], node.hi[2][child]}});
-    }
-    std::copy(box.lo.begin(), box.lo.end(), settings.root_lo);
-    std::copy(box.hi.begin(), box.hi.end(), settings.root_hi);
-}
-
 } // namespace
 
 std::vector<uint> choose_listed(const TriangleSoup &soup) {
@@ -89,8 +73,6 @@ void plant_tree(const TriangleSoup &soup, const std::vector<uint> &listed, FlatS
         rename(bvh.blocks, others);
     }
     scene.sah_cost = sah_cost(bvh);
-    fill_root_box(bvh, scene.settings);
-    scene.settings.root = bvh.root;
     scene.nodes = std::move(bvh.nodes);
     scene.blocks = std::move(bvh.blocks);
 }
