@@ -49,11 +49,7 @@ static void meet_root(LaneRays *rays, global const BvhNode *root, Ray ray, v3 in
     }
     STORE(low, rays->met_low);
     STORE(high, rays->met_high);
-    rays->walks = 0;
-    for (int lane = 0; lane < LANES; lane++) {
-        rays->walking[rays->walks] = lane;
-        rays->walks += (rays->met_low[lane] | rays->met_high[lane]) != 0;
-    }
+    rays->walks = list_lanes(to_mask((low | high) != 0u), rays->walking);
 }
 
 static void store_rays(LaneRays *rays, const Scene *scene, Ray ray, mask live) {
@@ -227,24 +223,39 @@ static TinyTest tiny_test(const TinyView *view, const uint *corner) {
     return test;
 }
 
+// The nearest of the listed triangles so far, as TinyTest has it.
+typedef struct { real distance, determinant, b, c; uints slot; } TinyBest;
+
+static void prefer(TinyBest *best, mask candidate, real distance, real determinant, real b, real c, uints slot) {
+    mask nearer = candidate & (distance * best->determinant < best->distance * determinant);
+    best->distance = nearer ? distance : best->distance;
+    best->determinant = nearer ? determinant : best->determinant;
+    best->b = nearer ? b : best->b;
+    best->c = nearer ? c : best->c;
+    best->slot = uints_pick(nearer, slot, best->slot);
+}
+
+static void tiny_try(const Scene *scene, const TinyView *view, Ray ray, uint i, TinyBest *best) {
+    TinyTriangle triangle = scene->tiny_triangles[i];
+    TinyTest test = tiny_test(view, triangle.corner);
+    prefer(best, test.inside & (test.distance > ray.tmin * test.determinant), test.distance, test.determinant, test.b, test.c,
+           (uints)(triangle.slot));
+}
+
+// Two halves are searched side by side: one comparison waits for the one before.
 static Hit tiny_closest(const Scene *scene, Ray ray, mask live) {
     TinyView view;
     view_vertices(scene, ray, &view);
-    real distance = ray.tmax, determinant = 1, b = 0, c = 0;
-    uints slot = (uints)(OPAL_NONE);
-    for (uint i = 0; i < scene->settings->tiny_triangle_count; i++) {
-        TinyTriangle triangle = scene->tiny_triangles[i];
-        TinyTest test = tiny_test(&view, triangle.corner);
-        mask nearer = test.inside & (test.distance > ray.tmin * test.determinant) &
-                      (test.distance * determinant < distance * test.determinant);
-        distance = nearer ? test.distance : distance;
-        determinant = nearer ? test.determinant : determinant;
-        b = nearer ? test.b : b;
-        c = nearer ? test.c : c;
-        slot = uints_pick(nearer, (uints)(triangle.slot), slot);
+    TinyBest best = {ray.tmax, (real)(1), (real)(0), (real)(0), (uints)(OPAL_NONE)}, other = best;
+    uint count = scene->settings->tiny_triangle_count, i = 0;
+    for (; i + 1 < count; i += 2) {
+        tiny_try(scene, &view, ray, i, &best);
+        tiny_try(scene, &view, ray, i + 1, &other);
     }
-    real reciprocal = 1 / determinant;
-    Hit hit = {distance * reciprocal, fabs(b) * reciprocal, fabs(c) * reciprocal, slot};
+    if (i < count) tiny_try(scene, &view, ray, i, &best);
+    prefer(&best, ALL_LANES, other.distance, other.determinant, other.b, other.c, other.slot);
+    real reciprocal = 1 / best.determinant;
+    Hit hit = {best.distance * reciprocal, fabs(best.b) * reciprocal, fabs(best.c) * reciprocal, best.slot};
     return hit;
 }
 

@@ -98,6 +98,17 @@ static v3 v3_cross(v3 a, v3 b) { return v3_of(a.y * b.z - a.z * b.y, a.z * b.x -
 static v3 v3_normalize(v3 a) { return v3_scale(a, rsqrt(v3_dot(a, a))); }
 static v3 v3_abs(v3 a) { return v3_of(fabs(a.x), fabs(a.y), fabs(a.z)); }
 
+// The lanes of m, lowest first; returns how many. Walking through a list costs one wrong guess of the processor, asking each lane several.
+static int list_lanes(mask m, int *list) {
+    int of[LANES], count = 0;
+    STORE(to_ints(m), of);
+    for (int lane = 0; lane < LANES; lane++) {
+        list[count] = lane;
+        count += of[lane] & 1;
+    }
+    return count;
+}
+
 static uints uints_pick(mask m, uints yes, uints no) { return to_ints(m) ? yes : no; }
 static v3 v3_pick(mask m, v3 yes, v3 no) { return v3_of(m ? yes.x : no.x, m ? yes.y : no.y, m ? yes.z : no.z); }
 

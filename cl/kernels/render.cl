@@ -40,13 +40,16 @@ typedef struct {
 static mask refill(const Scene *scene, Queue *queue, Path *path, mask live) {
     if (queue->y >= queue->bottom || !ANY(!live)) return live;
     uint width = scene->settings->width;
-    int carries[LANES], fresh[LANES];
+    int ended[LANES], fresh[LANES];
     uint xs[LANES], ys[LANES], samples[LANES], slots[LANES];
-    STORE(to_ints(live), carries);
-    for (int lane = 0; lane < LANES; lane++) {
-        fresh[lane] = 0;
-        xs[lane] = ys[lane] = samples[lane] = slots[lane] = 0;
-        if (carries[lane] || queue->y >= queue->bottom) continue;
+    int count = list_lanes(!live, ended);
+    STORE((ints)(0), fresh);
+    STORE(path->sampler.sample, samples);
+    STORE(path->slot, slots);
+    STORE((uints)(0), xs);
+    STORE((uints)(0), ys);
+    for (int i = 0; i < count && queue->y < queue->bottom; i++) {
+        int lane = ended[i];
         fresh[lane] = 1;
         xs[lane] = queue->x;
         ys[lane] = queue->y;
@@ -86,22 +89,22 @@ static mask refill(const Scene *scene, Queue *queue, Path *path, mask live) {
 
 // Puts the radiance of the paths that ended into their slots.
 static void retire(global float *slots, const Path *path, mask ended) {
-    if (!ANY(ended)) return;
-    int done[LANES];
+    int lanes[LANES];
+    int count = list_lanes(ended, lanes);
+    if (count == 0) return;
     uint place[LANES];
     real1 r[LANES], g[LANES], b[LANES];
-    STORE(to_ints(ended), done);
     STORE(path->slot, place);
     STORE(path->radiance.x, r);
     STORE(path->radiance.y, g);
     STORE(path->radiance.z, b);
-    for (int lane = 0; lane < LANES; lane++)
-        if (done[lane]) {
-            global float *slot = slots + 3 * (ulong)place[lane];
-            slot[0] = r[lane];
-            slot[1] = g[lane];
-            slot[2] = b[lane];
-        }
+    for (int i = 0; i < count; i++) {
+        int lane = lanes[i];
+        global float *slot = slots + 3 * (ulong)place[lane];
+        slot[0] = r[lane];
+        slot[1] = g[lane];
+        slot[2] = b[lane];
+    }
 }
 
 // The samples of work-item `item` of a pass: chunk item % chunks, of chunk_samples samples a pixel, of tile item / chunks. None
