@@ -36,11 +36,14 @@ static v2 cos_sin_2pi(real u) {
     return v2_of((turn == 1 | turn == 2) ? -cosine : cosine, turn >= 2 ? -sine : sine);
 }
 
-// An orthonormal frame around the unit vector n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
+// An orthonormal frame around the unit vector n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited"). Theirs jumps where
+// n.z changes its sign, which the last bit decides on upright walls: each precision and device then turned the same random numbers
+// another way. Here it jumps at a height that nothing is built at, and 1 / (sign + n.z) stays below 1.6.
+#define FRAME_JUMP R(-0.3719)
 typedef struct { v3 s, t, n; } Frame;
 
 static Frame frame_of(v3 n) {
-    real sign = copysign((real)(1), n.z);
+    real sign = n.z < FRAME_JUMP ? (real)(-1) : (real)(1);
     real a = -1 / (sign + n.z), b = n.x * n.y * a;
     Frame f = {v3_of(1 + sign * n.x * n.x * a, sign * b, -sign * n.x), v3_of(b, sign + n.y * n.y * a, -n.y), n};
     return f;
