@@ -130,6 +130,7 @@ static void walk_closest(const Scene *scene, const LaneRays *rays, int lane, rea
         }
         if (child & OPAL_LEAF) {
             uint block = child & ~OPAL_LEAF;
+            COUNT_TESTS(scene, blocks, 1);
             BlockTest test = intersect_block(scene->blocks + block, &ray);
             if (test.hits) {
                 real1 t[8], reciprocal[8], b[8], c[8];
@@ -149,6 +150,7 @@ static void walk_closest(const Scene *scene, const LaneRays *rays, int lane, rea
                 }
             }
         } else {
+            COUNT_TESTS(scene, nodes, 1);
             global const BvhNode *node = scene->nodes + child;
             real8 enter;
             met = intersect_children(node, &ray, &enter);
@@ -170,8 +172,10 @@ static int walk_any(const Scene *scene, const LaneRays *rays, int lane) {
         if (top == 0) return 0;
         uint child = stack[--top];
         if (child & OPAL_LEAF) {
+            COUNT_TESTS(scene, blocks, 1);
             if (intersect_block(scene->blocks + (child & ~OPAL_LEAF), &ray).hits) return 1;
         } else {
+            COUNT_TESTS(scene, nodes, 1);
             global const BvhNode *node = scene->nodes + child;
             real8 enter;
             met = intersect_children(node, &ray, &enter);

@@ -14,7 +14,12 @@ typedef struct {
     global const BsdfRecord *bsdfs;
     global const EmitterRecord *emitters;
     global const LightTriangle *light_triangles;
+    uint *tests;   // how many of each kind of TESTS_*; null but where they are counted
 } Scene;
+
+// What walks of the tree test beside its root, counted where the program is built for it (BuildOptions::count_tests).
+enum { TESTS_nodes, TESTS_blocks, TESTS_KINDS };
+#define COUNT_TESTS(scene, kind, many) if (OPAL_COUNT_TESTS) (scene)->tests[TESTS_##kind] += (many)
 
 // Every kernel that sees the scene has these parameters, in the order in which the host sets them (host/render/scene_buffers.cpp).
 #define SCENE_PARAMETERS \
@@ -23,7 +28,7 @@ typedef struct {
         global const TinyTriangle *tiny_triangles, global const MeshRecord *meshes, global const BsdfRecord *bsdfs, \
         global const EmitterRecord *emitters, global const LightTriangle *light_triangles
 #define SCENE_OF_PARAMETERS \
-    {settings, nodes, blocks, triangles, normals, tiny_vertices, tiny_triangles, meshes, bsdfs, emitters, light_triangles}
+    {settings, nodes, blocks, triangles, normals, tiny_vertices, tiny_triangles, meshes, bsdfs, emitters, light_triangles, 0}
 
 // Is this the choice of that axis? A constant where the kernel is specialised, else read from the settings.
 #define CHOSEN(scene, axis, choice) \

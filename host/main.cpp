@@ -26,6 +26,7 @@ const Command commands[] = {
     {"devices", "List every OpenCL platform and device, and which one `render` takes", setup_devices},
     {"inspect", "Show what a scene holds, and what its kernel will be compiled with and why", setup_inspect},
     {"sweep", "Measure error against time of several strategies on a scene, as one HTML page", setup_sweep},
+    {"bench", "Measure the speed of a scene: its rays alone, or the whole render", setup_bench},
     {"compare", "Hold an image against another: errors, and whether both can have one mean", setup_compare},
     {"verify", "Hold all unbiased strategies against each other on a scene", setup_verify},
     {"test", "Run Nori's tests: means against references, samples against densities", setup_test},

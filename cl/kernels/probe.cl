@@ -1,8 +1,8 @@
 // probe: the functions that rendering uses, one by one, on random numbers, points and rays of the host's choice, so that what
 // is tested is what renders (host/trust).
 //
-// A work-item carries LANES samples, from index first + item * LANES on. Inputs and outputs are planes of `stride` floats, a
-// multiple of 16: value k of sample i is at [k * stride + i]. Integers are in them by their bits.
+// A work-item carries LANES samples, from index first + item * LANES on. Inputs and outputs are planes (planes.cl) of `stride`
+// floats, a multiple of 16.
 #include "lanes.cl"
 #include "math.cl"
 #include "rng.cl"
@@ -14,39 +14,8 @@
 #include "surface.cl"
 #include "bsdf.cl"
 #include "emitter.cl"
+#include "planes.cl"
 #include "kernels/probe_list.h"
-
-static real get(global const float *planes, uint plane, uint stride, uint base) {
-    real1 lanes[LANES];
-    for (uint lane = 0; lane < LANES; lane++) lanes[lane] = planes[plane * stride + base + lane];
-    return LOAD(real, lanes);
-}
-static v2 get_v2(global const float *planes, uint plane, uint stride, uint base) {
-    return v2_of(get(planes, plane, stride, base), get(planes, plane + 1, stride, base));
-}
-static v3 get_v3(global const float *planes, uint plane, uint stride, uint base) {
-    return v3_of(get(planes, plane, stride, base), get(planes, plane + 1, stride, base), get(planes, plane + 2, stride, base));
-}
-static void put(global float *planes, uint plane, uint stride, uint base, real value) {
-    real1 lanes[LANES];
-    STORE(value, lanes);
-    for (uint lane = 0; lane < LANES; lane++) planes[plane * stride + base + lane] = (float)lanes[lane];
-}
-static void put_v3(global float *planes, uint plane, uint stride, uint base, v3 value) {
-    put(planes, plane, stride, base, value.x);
-    put(planes, plane + 1, stride, base, value.y);
-    put(planes, plane + 2, stride, base, value.z);
-}
-static void put_uints(global float *planes, uint plane, uint stride, uint base, uints value) {
-    uint lanes[LANES];
-    STORE(value, lanes);
-    for (uint lane = 0; lane < LANES; lane++) planes[plane * stride + base + lane] = as_float(lanes[lane]);
-}
-static uints lane_indices(uint base) {
-    uint lanes[LANES];
-    for (uint lane = 0; lane < LANES; lane++) lanes[lane] = base + lane;
-    return LOAD(uints, lanes);
-}
 
 // Drivers compile a kernel for each launch's shape, so that all launches have one: work-items past the end return.
 #define BASE_OR_RETURN \

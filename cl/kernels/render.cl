@@ -206,7 +206,7 @@ static void gather_own(FilmPlace at, global const float *slots, global float *fi
 // The samples of the pixels around, wherever in those they fell, by the filter's weight.
 static void gather_around(FilmPlace at, global const Settings *settings, global const float *slots, global float *film, uint pass_first,
                    uint pass_samples) {
-    Scene scene = {settings, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+    Scene scene = {settings, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
     uint width = settings->width, height = settings->height;
     Sum sums[4];
     for (uint c = 0; c < 4; c++) sums[c] = film_load(film, at, FILM_WEIGHTED + c, 4);

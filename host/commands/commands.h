@@ -10,6 +10,7 @@ namespace opal {
 using RunCommand = std::function<int()>; // the process's exit code; throws Error
 
 // One function a file of this folder, named after it. Called for every command before the command line is parsed.
+RunCommand setup_bench(CLI::App &app);
 RunCommand setup_compare(CLI::App &app);
 RunCommand setup_devices(CLI::App &app);
 RunCommand setup_extremes(CLI::App &app);

@@ -43,8 +43,9 @@ int lanes_for(const DeviceInfo &info, int wanted, MathMode math) {
 }
 
 std::string program_text(const Features &features, const BuildOptions &options, const Sources &sources) {
-    std::string text = fmt::format("#define LANES {}\n#define OPAL_DOUBLE {}\n#define OPAL_FAST {}\n", options.lanes,
-                                   int(options.math == MathMode::double_precision), int(options.math == MathMode::fast));
+    std::string text = fmt::format("#define LANES {}\n#define OPAL_DOUBLE {}\n#define OPAL_FAST {}\n#define OPAL_COUNT_TESTS {}\n", options.lanes,
+                                   int(options.math == MathMode::double_precision), int(options.math == MathMode::fast),
+                                   int(options.count_tests));
     for (const Feature &feature : features.list)
         text += fmt::format("#define OPAL_HAS_{} {}\n", feature.name, int(feature.on));
 #define OPAL_AXIS_DEFINE(axis, help) text += fmt::format("#define OPAL_AXIS_" #axis " {}\n", features.axes[AXIS_##axis]);

@@ -12,6 +12,7 @@ struct BuildOptions {
     int lanes = 1;
     MathMode math = MathMode::precise;
     std::string kernels = "kernels/render.cl"; // the file with the entry points, below cl/
+    bool count_tests = false;                  // traversal counts what it tests (Scene::tests), for benchmarks
 };
 
 // The width of a kernel on that device: `wanted`, or the device's own where that is 0, which doubles halve (4 at least).
@@ -28,7 +29,7 @@ struct Sources {
     std::string expand(const std::string &file) const;
 };
 
-// Defines (every feature, every axis, LANES, OPAL_DOUBLE, OPAL_FAST) followed by the expanded sources.
+// Defines (every feature, every axis, LANES, OPAL_DOUBLE, OPAL_FAST, OPAL_COUNT_TESTS) followed by the expanded sources.
 std::string program_text(const Features &features, const BuildOptions &options, const Sources &sources);
 
 // Compiles with -cl-std=CL1.2 -Werror (and, for MathMode::fast, -cl-fast-relaxed-math). Error: device, driver, build log.

@@ -5,8 +5,9 @@
 // TRIANGLES: uint32 count, then 9 float32 a triangle. RAYS: 8 float32 a ray: ox oy oz tmin dx dy dz tmax. HITS: float32
 // t, u, v and int32 triangle a ray, -1 for none; for `any` only the triangle counts, 0 or -1. All little-endian. Prints
 // one JSON object: mrays_per_second is the median of the runs, each over all rays on all cores; `different` counts,
-// against HITS, rays that one hits and the other misses, distances that are more than 1e-4 apart, and other triangles
-// at the same distance (a shared edge).
+// against HITS, rays that one hits and the other misses, points that are apart, and other triangles at the same point (a
+// shared edge). Points are apart that differ by more than 1e-4 of their distance and by more than single precision can tell
+// of coordinates of the scene's size, 2e-6 of it.
 #include <embree3/rtcore.h>
 
 #include <algorithm>
@@ -151,7 +152,17 @@ struct Differences {
     size_t hit_or_miss = 0, distance = 0, triangle = 0;
 };
 
-Differences differences(const std::vector<Hit> &ours, const std::vector<Hit> &given, bool any) {
+// The largest coordinate of all triangles.
+float size_of(const std::vector<Triangle> &triangles) {
+    float size = 0;
+    for (const Triangle &t : triangles)
+        for (float x : t.corners)
+            size = std::max(size, std::abs(x));
+    return size;
+}
+
+Differences differences(const std::vector<Hit> &ours, const std::vector<Hit> &given, const std::vector<Ray> &rays, float size,
+                        bool any) {
     if (ours.size() != given.size())
         throw std::runtime_error("the hits to compare are " + std::to_string(given.size()) + ", the rays " +
                                  std::to_string(ours.size()));
@@ -162,7 +173,8 @@ Differences differences(const std::vector<Hit> &ours, const std::vector<Hit> &gi
             ++found.hit_or_miss;
         else if (a.triangle < 0 || any)
             continue;
-        else if (!(std::abs(a.t - b.t) <= 1e-4f * std::max(std::abs(a.t), std::abs(b.t))))
+        else if (!(std::abs(a.t - b.t) <= std::max(1e-4f * std::max(std::abs(a.t), std::abs(b.t)),
+                                                   2e-6f * size / std::hypot(rays[i].dx, rays[i].dy, rays[i].dz))))
             ++found.distance;
         else if (a.triangle != b.triangle)
             ++found.triangle;
@@ -220,7 +232,7 @@ void replay(const Options &o) {
                 "\"build_seconds\": %.6g",
                 rates[rates.size() / 2], rates.front(), rates.back(), rays.size(), triangles.size(), build);
     if (!o.compare.empty()) {
-        const Differences d = differences(hits, read_records<Hit>(o.compare), o.any);
+        const Differences d = differences(hits, read_records<Hit>(o.compare), rays, size_of(triangles), o.any);
         std::printf(", \"different\": {\"hit_or_miss\": %zu, \"distance\": %zu, \"triangle\": %zu}", d.hit_or_miss,
                     d.distance, d.triangle);
     }

@@ -42,8 +42,9 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"render", {"base", "cl", "scene", "flatten", "device", "image", "stats"}},
     {"trust", {"base", "cl", "scene", "flatten", "device", "image", "stats", "render"}},
     {"extremes", {"base", "cl", "scene", "flatten", "device", "image", "stats", "render"}},
+    {"bench", {"base", "cl", "scene", "flatten", "device", "image", "stats", "render"}},
     {"sweep", {"base", "cl", "scene", "flatten", "device", "image", "stats", "render", "trust"}},
-    {"commands", {"base", "cl", "scene", "flatten", "device", "image", "stats", "render", "trust", "sweep", "extremes"}},
+    {"commands", {"base", "cl", "scene", "flatten", "device", "image", "stats", "render", "trust", "sweep", "extremes", "bench"}},
 };
 const std::set<std::string> without_opencl = {"base", "image", "stats", "scene", "flatten"};
 
