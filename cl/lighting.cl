@@ -63,7 +63,7 @@ static v3 sampled_light(const Scene *scene, const Path *path, Surface s, mask li
         per_density = weight * per_density;
     }
     v3 light_in = v3_scale(v3_mul(f, emitter_radiance(scene, id)), wo.z * per_density);
-    live = live & (v3_largest(light_in) > 0);
+    live = live & ((v3_largest(light_in) > 0) | !is_finite(light_in)); // what is not finite must reach the film to be counted
     if (!ANY(live)) return none;
 
     // The ray ends at t = 1, above the light's surface as it starts above this one's.
@@ -77,6 +77,11 @@ static v3 sampled_light(const Scene *scene, const Path *path, Surface s, mask li
 static mask scatter(const Scene *scene, Path *path, Surface s, mask live) {
     v2 lobe = path_draw(scene, path, DIM_LOBE);
     BsdfSample sample = bsdf_sample(scene, s.bsdf, s.wi, path_draw(scene, path, DIM_BSDF), lobe.x, live);
+    mask broken = live & !is_finite(sample.weight);
+    if (ANY(broken)) { // ends here, and is counted
+        path->radiance = v3_pick(broken, sample.weight, path->radiance);
+        live = live & !broken;
+    }
     live = live & (v3_largest(sample.weight) > 0);
     v3 d = to_world(s.frame, sample.wo);
     path->ray.o = leave_surface(s, d);

@@ -148,10 +148,11 @@ int run(const Options &o, const CLI::App &app) {
     apply_size(scene, o, app);
     const std::filesystem::path exr = o.out.empty() ? scene.file.stem().replace_extension(".exr") : std::filesystem::path(o.out);
     const std::filesystem::path png = std::filesystem::path(exr).replace_extension(".png");
+    const bool with_png = !o.no_png && (!std::filesystem::exists(exr) || std::filesystem::is_regular_file(exr)); // none beside /dev/null
     if (png == exr)
         throw Error(fmt::format("--output {}: names the EXR file; the PNG goes beside it", exr.string()));
     check_writable(exr);
-    if (!o.no_png)
+    if (with_png)
         check_writable(png);
     if (!o.json.empty())
         check_writable(o.json);
@@ -202,7 +203,7 @@ int run(const Options &o, const CLI::App &app) {
     add_metadata(image, report, command_line());
     Stopwatch write;
     write_exr(image, exr);
-    if (!o.no_png)
+    if (with_png)
         write_png(image, png);
     seconds.write = write.seconds();
 
@@ -212,7 +213,7 @@ int run(const Options &o, const CLI::App &app) {
     tell_result(report, film);
     if (rule.given())
         tell_stop(report["stop"], report["spp"].get<double>(), seconds.render);
-    info(fmt::format("wrote   {}{}", exr.string(), o.no_png ? "" : " and " + png.string()));
+    info(fmt::format("wrote   {}{}", exr.string(), with_png ? " and " + png.string() : ""));
     if (stopped.complete)
         return 0;
     warn(fmt::format("interrupted: the image holds {:.4g} of {} samples a pixel", report["spp"].get<double>(), stopped.spp));

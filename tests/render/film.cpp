@@ -54,6 +54,24 @@ TEST_CASE("Invalid samples are counted, placed and left out of the mean", "[film
     }
 }
 
+TEST_CASE("What a BSDF or a light makes of no number ends the path and is counted", "[film]") {
+    const Mutant weight{"weight", "bsdfs/diffuse.cl", "return bsdf_sample_of(wo, v3_scale(b.albedo, wi.z > 0 ? weight : (real)(0))",
+                        "return bsdf_sample_of(wo, v3_of((real)(NAN), b.albedo.y, b.albedo.z)"};
+    const Mutant light{"light", "bsdfs/diffuse.cl", "return v3_scale(b.albedo, above ? (real)(INV_PI) : (real)(0));", "return v3_of((real)(NAN), b.albedo.y, b.albedo.z);"};
+    for (const auto &[mutant, lighting] : {std::pair{weight, "bsdf"}, std::pair{light, "emitter"}})
+        for (const char *math : {"precise", "fast"}) {
+            INFO(mutant.name << ", " << math);
+            const SceneDescription scene = with(furnace(0.5, 1), {{"lighting", lighting}, {"rr", "off"}, {"max-depth", "2"}, {"math", math}});
+            const Sources sources = mutated(Sources::embedded(), mutant);
+            Shot shot;
+            shot.sources = &sources;
+            const Film film = render(scene, 4, 1, shot);
+            const size_t samples = 4 * film.count.size();
+            CHECK(film.invalid <= samples);
+            CHECK(film.invalid >= (mutant.name == "weight" ? samples : samples / 2)); // some points on the light are behind the surface
+        }
+}
+
 TEST_CASE("The binary tells of invalid samples, in words and in the JSON", "[film]") {
     const ScratchFolder folder;
     for (const auto &[name, text] : mutated(Sources::embedded(), spoiled("NAN")).files)
