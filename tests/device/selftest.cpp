@@ -63,10 +63,10 @@ TEST_CASE("What computes wrong is found", "[selftest]") {
 
 TEST_CASE("A crash, a hang and kernels that do not build are told", "[selftest]") {
     const char *const output = "planes[plane * stride + base + lane] = (float)lanes[lane];";
-    const Outcome crash = selftest_of_mutant("warps", "kernels/probe.cl", output, "*(volatile global float *)(8 + get_global_id(0)) = (float)lanes[lane];");
+    const Outcome crash = selftest_of_mutant("warps", "planes.cl", output, "*(volatile global float *)(8 + get_global_id(0)) = (float)lanes[lane];");
     CHECK(crash.exit_code == 1);
     CHECK_THAT(crash.out, Catch::Contains("warps at 1 precise: crashed (Segmentation fault)"));
-    const Outcome broken = selftest_of_mutant("warps", "kernels/probe.cl", output, "nothing;");
+    const Outcome broken = selftest_of_mutant("warps", "planes.cl", output, "nothing;");
     CHECK(broken.exit_code == 1);
     CHECK_THAT(broken.out, Catch::Contains("the kernels do not build"));
     const ScratchFolder folder;
