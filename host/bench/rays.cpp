@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <ctime>
 
 namespace opal {
 
@@ -117,8 +118,8 @@ struct RayBench::Batch {
     cl::Buffer rays, hits, tests;
 };
 
-// Traces them all and returns the seconds on the device.
-double RayBench::trace(cl::Program &program, Batch &batch) {
+// Traces them all and returns the seconds on the device, and those of this process on all cores.
+RayBench::Seconds RayBench::trace(cl::Program &program, Batch &batch) {
     return with_device(device_.info, [&] {
         cl::Kernel kernel(program, batch.kernel);
         cl_uint place = 0;
@@ -129,10 +130,12 @@ double RayBench::trace(cl::Program &program, Batch &batch) {
         for (size_t value : {batch.count, batch.stride, batch.rays_an_item})
             kernel.setArg(place++, cl_uint(value));
         cl::Event event;
+        const std::clock_t before = std::clock();
         device_.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(batch.items),
                                            cl::NDRange(device_.info.type == "gpu" ? 64 : 1), nullptr, &event);
         event.wait();
-        return 1e-9 * double(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() - event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+        return Seconds{1e-9 * double(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() - event.getProfilingInfo<CL_PROFILING_COMMAND_START>()),
+                       double(std::clock() - before) / CLOCKS_PER_SEC};
     });
 }
 
@@ -155,11 +158,15 @@ RayTimes RayBench::time(const RaySet &set, int runs) {
     batch.tests = make_zeros<cl_uint>(device_, tests_kinds * batch.items, "the counts of tests");
 
     trace(program_, batch);
-    std::vector<double> rates;
-    for (int run = 0; run < runs; run++)
-        rates.push_back(1e-6 * double(count) / trace(program_, batch));
+    std::vector<double> rates, cpu_rates;
+    for (int run = 0; run < runs; run++) {
+        const Seconds seconds = trace(program_, batch);
+        rates.push_back(1e-6 * double(count) / seconds.device);
+        cpu_rates.push_back(1e-6 * double(count) / seconds.cpu);
+    }
     RayTimes times;
     times.mrays_per_second = spread_of(rates);
+    times.mrays_per_cpu_second = spread_of(cpu_rates);
 
     const std::vector<float> hits = read_buffer<float>(device_, batch.hits, TRACE_HIT_PLANES * batch.stride);
     const auto value = [&](size_t plane, size_t i) { return hits[plane * batch.stride + i]; };

@@ -29,7 +29,7 @@ struct RayHit {
 };
 
 struct RayTimes {
-    Spread mrays_per_second;
+    Spread mrays_per_second, mrays_per_cpu_second; // the latter of this process's time on all cores: steady where others work, too
     std::vector<RayHit> hits;
     double hit_share = 0;
     double node_tests = 0, triangle_tests = 0; // a ray: nodes of 8 children; places of blocks, and listed triangles
@@ -50,7 +50,10 @@ public:
 
 private:
     struct Batch;
-    double trace(cl::Program &program, Batch &batch);
+    struct Seconds {
+        double device, cpu;
+    };
+    Seconds trace(cl::Program &program, Batch &batch);
     cl::Program &counting_program();
 
     const Device device_;

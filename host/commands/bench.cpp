@@ -61,6 +61,7 @@ json times_json(const RaySet &set, const RayTimes &times) {
             {"mrays_per_second", rate.median},
             {"least", rate.least},
             {"greatest", rate.greatest},
+            {"mrays_per_cpu_second", times.mrays_per_cpu_second.median},
             {"hit_share", times.hit_share},
             {"node_tests_per_ray", times.node_tests},
             {"triangle_tests_per_ray", times.triangle_tests}};
@@ -134,8 +135,8 @@ int run_rays(const RayOptions &o) {
             dump(o, flat, set, times);
         }
         const Spread &rate = times.mrays_per_second;
-        fmt::print("{:<8}{:.4g} [{:.4g}, {:.4g}] Mrays/s, {} rays, {:.3g} % hit, {:.4g} nodes and {:.4g} triangles tested a ray\n", name, rate.median,
-                   rate.least, rate.greatest, set.rays.size(), 100 * times.hit_share, times.node_tests, times.triangle_tests);
+        fmt::print("{:<8}{:.4g} [{:.4g}, {:.4g}] Mrays/s, {:.4g} a CPU-second, {} rays, {:.3g} % hit, {:.4g} nodes and {:.4g} triangles tested a ray\n",
+                   name, rate.median, rate.least, rate.greatest, times.mrays_per_cpu_second.median, set.rays.size(), 100 * times.hit_share, times.node_tests, times.triangle_tests);
     }
     report["compile_seconds"] = bench.compile_seconds();
     if (!o.json.empty())

@@ -7,7 +7,8 @@ import tempfile
 from peers.report import PeerError, spread
 
 KINDS = ("camera", "bounce", "shadow")
-HEADINGS = ["scene", "triangles", "rays", "Opal Mrays/s", "Embree Mrays/s", "Opal / Embree", "hits that differ"]
+HEADINGS = ["scene", "triangles", "rays", "Opal Mrays/s", "Embree Mrays/s", "Opal / Embree", "by CPU time", "hits that differ"]
+RATES = ("mrays_per_second", "mrays_per_cpu_second")
 
 
 def run(command):
@@ -37,20 +38,22 @@ def compare_kind(options, scene, kind, replay, folder):
     files = {what: os.path.join(folder, what) for what in ("rays", "hits", "triangles", "json")}
     opal = [options.opal, "bench", "rays", scene, "--kind", kind, "--json", files["json"], *options.opal_args]
     dumps = [part for what in ("rays", "hits", "triangles") for part in (f"--dump-{what}", files[what])]
-    ours, theirs = [], []
+    ours, theirs = {rate: [] for rate in RATES}, {rate: [] for rate in RATES}
     for k in range(options.rounds):
         run(opal + (dumps if k == 0 else []))
         if not os.path.exists(files["json"]):
             raise PeerError(f"`{' '.join(opal)}` wrote no statistics")
         with open(files["json"]) as f:
-            ours.append(json.load(f)["mrays_per_second"])
+            said = json.load(f)
         answer = json.loads(run([replay, files["triangles"], files["rays"], "any" if kind == "shadow" else "closest", "--compare", files["hits"]]))
-        theirs.append(answer["mrays_per_second"])
+        for rate in RATES:
+            ours[rate].append(said[rate])
+            theirs[rate].append(answer[rate])
     different = answer["different"]
     share = sum(different[what] for what in ("hit_or_miss", "distance")) / answer["rays"]
     name = os.path.splitext(os.path.basename(scene))[0]
-    row = [f"{name}, {kind}", str(answer["triangles"]), str(answer["rays"]), spread(ours), spread(theirs),
-           spread([a / b for a, b in zip(ours, theirs)]), f"{share:.1e} (and {different['triangle']} at an equal distance)"]
+    ratios = [spread([a / b for a, b in zip(ours[rate], theirs[rate])]) for rate in RATES]
+    row = [f"{name}, {kind}", str(answer["triangles"]), str(answer["rays"]), spread(ours[RATES[0]]), spread(theirs[RATES[0]]), *ratios, f"{share:.1e} (and {different['triangle']} at an equal distance)"]
     return row, share <= options.differing
 
 

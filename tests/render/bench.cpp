@@ -162,6 +162,7 @@ TEST_CASE("Figures of all kinds, and of one", "[bench]") {
         const json &row = all["kinds"][kind];
         INFO(row.dump());
         CHECK((row["least"] > 0.0 && row["least"] <= row["mrays_per_second"] && row["mrays_per_second"] <= row["greatest"]));
+        CHECK(row["mrays_per_cpu_second"] > 0.0);
         CHECK((row["node_tests_per_ray"] >= 1.0 && row["node_tests_per_ray"] < 100.0));
         CHECK((row["triangle_tests_per_ray"] > 0.0 && row["triangle_tests_per_ray"] < double(all["triangles"])));
         CHECK_THAT(outcome.out, Catch::Contains(kind));
