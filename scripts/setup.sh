@@ -8,7 +8,7 @@ packages=(
     pocl-opencl-icd                                              # an OpenCL device: the CPU
     libopenexr-dev libpng-dev libpugixml-dev                     # images and XML
     libfmt-dev libcli11-dev nlohmann-json3-dev                   # text, command line, JSON
-    catch2                                                       # tests
+    catch2 libtinyobjloader-dev                                  # tests
 )
 
 missing=()

@@ -18,22 +18,24 @@ constexpr unsigned none = OPAL_NONE;
 
 struct Face {
     size_t first, count; // its corners
-    int line;
+    const char *statement;
 };
 
 // The file as it was written, but for indices: they count from 0, and `none` stands for a missing one.
 struct ObjFile {
     std::string name;
+    std::string_view text;
+    const char *reading = nullptr; // the word that errors are about
     std::vector<Vec3> positions, normals;
     size_t texture_count = 0;
-    unsigned largest_texture = 0; // index that a face names, and the face's line
-    int largest_texture_line = 0;
+    unsigned largest_texture = 0; // index that a face names, and that corner
+    const char *largest_texture_corner = nullptr;
     std::vector<TriangleMesh::Corner> corners;
     std::vector<Face> faces;
     size_t dropped = 0; // faces of fewer than three corners, triangles without area
 
-    [[noreturn]] void fail(int line, const std::string &message) const {
-        throw Error(SourcePlace{name, line, 0}.text() + ": " + message);
+    [[noreturn]] void fail(const char *word, const std::string &message) const {
+        throw Error(place_in(name, text, word - text.data()).text() + ": " + message);
     }
 };
 
@@ -45,21 +47,17 @@ public:
     bool next(std::vector<std::string_view> &words) {
         words.clear();
         while (words.empty() && position_ < text_.size()) {
-            line = next_line_;
             for (bool continued = true; continued;)
                 continued = add_line(words);
         }
         return !words.empty();
     }
 
-    int line = 0; // of the statement's start, from 1
-
 private:
     bool add_line(std::vector<std::string_view> &words) {
         size_t end = std::min(text_.find('\n', position_), text_.size());
         std::string_view row = text_.substr(position_, end - position_);
         position_ = end + 1;
-        ++next_line_;
         row = row.substr(0, row.find('#'));
         size_t last = row.find_last_not_of(" \t\r");
         bool continued = last != std::string_view::npos && row[last] == '\\' && position_ < text_.size();
@@ -76,16 +74,20 @@ private:
 
     std::string_view text_;
     size_t position_ = 0;
-    int next_line_ = 1;
 };
 
 using Words = std::vector<std::string_view>;
 
 // Further numbers, such as vertex colours, mean nothing here.
-Vec3 read_triple(const Words &words) {
+Vec3 read_triple(ObjFile &obj, const Words &words) {
     if (words.size() < 4)
         throw Error("'" + std::string(words[0]) + "' needs three numbers");
-    return {parse_number(words[1]), parse_number(words[2]), parse_number(words[3])};
+    double numbers[3];
+    for (size_t i = 0; i < 3; ++i) {
+        obj.reading = words[i + 1].data();
+        numbers[i] = parse_number(words[i + 1]);
+    }
+    return {numbers[0], numbers[1], numbers[2]};
 }
 
 // From 1, or from the end so far where negative; whether it is too large is known at the end of the file.
@@ -98,7 +100,8 @@ unsigned read_index(std::string_view word, size_t count_so_far, const char *what
 }
 
 // v, v/vt, v//vn or v/vt/vn.
-TriangleMesh::Corner read_corner(ObjFile &obj, std::string_view word, int line) {
+TriangleMesh::Corner read_corner(ObjFile &obj, std::string_view word) {
+    obj.reading = word.data();
     std::string_view parts[3];
     size_t count = 0;
     for (std::string_view rest = word; count < 3; ++count) {
@@ -113,59 +116,64 @@ TriangleMesh::Corner read_corner(ObjFile &obj, std::string_view word, int line) 
     if (!parts[1].empty())
         if (unsigned index = read_index(parts[1], obj.texture_count, "texture"); index >= obj.largest_texture) {
             obj.largest_texture = index;
-            obj.largest_texture_line = line;
+            obj.largest_texture_corner = word.data();
         }
     return {read_index(parts[0], obj.positions.size(), "vertex"),
             parts[2].empty() ? none : read_index(parts[2], obj.normals.size(), "normal")};
 }
 
-void read_face(ObjFile &obj, const Words &words, int line) {
+void read_face(ObjFile &obj, const Words &words) {
     size_t first = obj.corners.size();
     for (size_t i = 1; i < words.size(); ++i)
-        obj.corners.push_back(read_corner(obj, words[i], line));
-    obj.faces.push_back({first, words.size() - 1, line});
+        obj.corners.push_back(read_corner(obj, words[i]));
+    obj.faces.push_back({first, words.size() - 1, words[0].data()});
 }
 
-void read_statement(ObjFile &obj, const Words &words, int line) {
+void read_statement(ObjFile &obj, const Words &words) {
+    obj.reading = words[0].data();
     if (words[0] == "v")
-        obj.positions.push_back(read_triple(words));
+        obj.positions.push_back(read_triple(obj, words));
     else if (words[0] == "vn")
-        obj.normals.push_back(read_triple(words));
+        obj.normals.push_back(read_triple(obj, words));
     else if (words[0] == "vt")
         ++obj.texture_count;
     else if (words[0] == "f")
-        read_face(obj, words, line);
+        read_face(obj, words);
 }
 
-ObjFile read_statements(const std::filesystem::path &file) {
-    ObjFile obj;
-    obj.name = file.string();
-    std::string text = read_file(file);
-    Statements statements(text);
+void read_statements(ObjFile &obj) {
+    Statements statements(obj.text);
     for (Words words; statements.next(words);)
         try {
-            read_statement(obj, words, statements.line);
+            read_statement(obj, words);
         } catch (const Error &error) {
-            obj.fail(statements.line, error.what());
+            obj.fail(obj.reading, error.what());
         }
-    return obj;
 }
 
-void check_index(const ObjFile &obj, int line, const char *what, unsigned index, size_t count) {
-    if (index >= count)
-        obj.fail(line, fmt::format("{} index {} is out of range: the file has {}", what, index + 1ull, count));
+// The word of a face's corner, found again.
+const char *corner_word(const ObjFile &obj, const Face &face, size_t corner) {
+    Words words;
+    Statements(obj.text.substr(size_t(face.statement - obj.text.data()))).next(words);
+    return words[1 + corner - face.first].data();
+}
+
+std::string too_large(const char *what, unsigned index, size_t count) {
+    return fmt::format("{} index {} is out of range: the file has {}", what, index + 1ull, count);
 }
 
 // Texture coordinates are not kept: Opal has no textures.
 void check_indices(const ObjFile &obj) {
     for (const Face &face : obj.faces)
         for (size_t i = face.first; i < face.first + face.count; ++i) {
-            check_index(obj, face.line, "vertex", obj.corners[i].position, obj.positions.size());
-            if (obj.corners[i].normal != none)
-                check_index(obj, face.line, "normal", obj.corners[i].normal, obj.normals.size());
+            const auto [position, normal] = obj.corners[i];
+            if (position >= obj.positions.size())
+                obj.fail(corner_word(obj, face, i), too_large("vertex", position, obj.positions.size()));
+            if (normal != none && normal >= obj.normals.size())
+                obj.fail(corner_word(obj, face, i), too_large("normal", normal, obj.normals.size()));
         }
-    if (obj.largest_texture_line > 0)
-        check_index(obj, obj.largest_texture_line, "texture", obj.largest_texture, obj.texture_count);
+    if (obj.largest_texture_corner && obj.largest_texture >= obj.texture_count)
+        obj.fail(obj.largest_texture_corner, too_large("texture", obj.largest_texture, obj.texture_count));
 }
 
 // Normals of no length become `none` in the corners, as if they were missing.
@@ -242,18 +250,22 @@ std::vector<Vec3> compact(const std::vector<Vec3> &all, std::vector<std::array<T
 } // namespace
 
 TriangleMesh read_obj(const std::filesystem::path &file, const Transform &to_world) {
-    ObjFile obj = read_statements(file);
+    const std::string text = read_file(file);
+    ObjFile obj;
+    obj.name = file.string();
+    obj.text = text;
+    read_statements(obj);
     check_indices(obj);
     to_world_space(obj, to_world);
     TriangleMesh mesh;
     mesh.triangles = make_triangles(obj);
+    const std::string dropped = obj.dropped ? fmt::format("dropped {} triangles without area", obj.dropped) : "";
+    if (mesh.triangles.empty())
+        throw Error(obj.name + ": holds no triangles" + (obj.dropped ? ": " + dropped : ""));
+    if (obj.dropped > 0)
+        warn(fmt::format("{}: {}, kept {}", obj.name, dropped, mesh.triangles.size()));
     mesh.positions = compact(obj.positions, mesh.triangles, &TriangleMesh::Corner::position);
     mesh.normals = compact(obj.normals, mesh.triangles, &TriangleMesh::Corner::normal);
-    if (obj.dropped > 0)
-        warn(obj.name + ": dropped " + std::to_string(obj.dropped) + " triangles without area, kept " +
-             std::to_string(mesh.triangles.size()));
-    if (mesh.triangles.empty())
-        warn(obj.name + ": holds no triangles; the mesh is invisible");
     return mesh;
 }
 

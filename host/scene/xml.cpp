@@ -52,6 +52,14 @@ std::string read_file(const std::filesystem::path &file) {
     return std::move(bytes).str();
 }
 
+SourcePlace place_in(const std::string &file, std::string_view text, ptrdiff_t offset) {
+    auto end = text.begin() + std::clamp<ptrdiff_t>(offset, 0, ptrdiff_t(text.size()));
+    auto line = std::count(text.begin(), end, '\n');
+    auto start = std::find(std::make_reverse_iterator(end), text.rend(), '\n').base();
+    auto column = std::count_if(start, end, [](char c) { return (c & 0xc0) != 0x80; });
+    return {file, int(line) + 1, int(column) + 1};
+}
+
 SourcePlace XmlNode::place() const { return document_->place(node_.offset_debug() - 1); }
 
 std::vector<XmlNode> XmlNode::children() const { return elements_of(*document_, node_); }
@@ -93,14 +101,6 @@ XmlNode XmlDocument::root() const {
     if (roots.size() > 1)
         roots[1].fail("a second root <" + roots[1].tag() + ">; a file holds one");
     return roots[0];
-}
-
-SourcePlace XmlDocument::place(ptrdiff_t offset) const {
-    auto end = text_.begin() + std::clamp<ptrdiff_t>(offset, 0, ptrdiff_t(text_.size()));
-    auto line = std::count(text_.begin(), end, '\n');
-    auto start = std::find(std::make_reverse_iterator(end), text_.rend(), '\n').base();
-    auto column = std::count_if(start, end, [](char c) { return (c & 0xc0) != 0x80; });
-    return {file_, int(line) + 1, int(column) + 1};
 }
 
 } // namespace opal

@@ -13,6 +13,12 @@
 
 namespace opal {
 
+// The whole file as bytes; throws Error that names the file.
+std::string read_file(const std::filesystem::path &file);
+
+// Line and column of a byte offset in a file's text, from 1; columns count characters of UTF-8.
+SourcePlace place_in(const std::string &file, std::string_view text, ptrdiff_t offset);
+
 class XmlDocument;
 
 // An element. Valid as long as its document; cheap to copy.
@@ -44,16 +50,11 @@ public:
     XmlDocument &operator=(const XmlDocument &) = delete;
 
     XmlNode root() const; // the one root element
-    // Line and column of a byte offset; columns count characters of UTF-8.
-    SourcePlace place(ptrdiff_t offset) const;
+    SourcePlace place(ptrdiff_t offset) const { return place_in(file_, text_, offset); }
     const std::string &text() const { return text_; }
 
 private:
     std::string file_, text_;
     pugi::xml_document document_;
 };
-
-// The whole file as bytes; throws Error that names the file.
-std::string read_file(const std::filesystem::path &file);
-
 } // namespace opal

@@ -112,7 +112,7 @@ const std::vector<LightRow> lights = {
     {"mesh", [] { return std::vector<Mesh>{light_triangles(0, 1, 1)}; }},
     {"many", [] {
          return std::vector<Mesh>{light_parallelogram({0, 0, 0}, {0.25, 0, 0}, {0, 1, 0}, 1), light_triangles(0.25, 0.75, 2),
-                                  light_parallelogram({0.75, 0, 0}, {0.25, 0, 0}, {0, 0.5, 0}, 5)};
+                                  light_parallelogram({0.75, 0, 0}, {0.25, 0, 0}, {0, 0.5171, 0}, 5)}; // its end lies between cells
      }},
 };
 

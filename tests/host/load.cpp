@@ -326,7 +326,7 @@ TEST_CASE_METHOD(LoadFixture, "OBJ files are found beside the scene, then in the
 TEST_CASE_METHOD(LoadFixture, "an error in an OBJ file names it and the mesh", "[load]") {
     std::string obj = scratch.write("bad.obj", "v 0 0 0\nf 1 2 3\n").string();
     CHECK(error_in(camera + "\n <mesh type='obj'><string name='filename' value='bad.obj'/></mesh>") ==
-          obj + ":2: vertex index 2 is out of range: the file has 1 (the mesh at " + file() + ":3:2)");
+          obj + ":2:5: vertex index 2 is out of range: the file has 1 (the mesh at " + file() + ":3:2)");
 }
 
 TEST_CASE_METHOD(LoadFixture, "an unknown property fails, or warns if lenient", "[load]") {

@@ -6,6 +6,8 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include <tiny_obj_loader.h>
+
 #include <cmath>
 #include <set>
 
@@ -48,7 +50,70 @@ Vec3 area_vector(const TriangleMesh &mesh) {
     return sum;
 }
 
+using Point = std::array<float, 6>; // position and normal of a corner, the normal zero where the face gives none
+
+std::vector<std::array<Point, 3>> by_tinyobjloader(const std::filesystem::path &file) {
+    tinyobj::ObjReaderConfig config;
+    config.triangulate = false;
+    tinyobj::ObjReader reader;
+    REQUIRE(reader.ParseFromFile(file.string(), config));
+    const tinyobj::attrib_t &all = reader.GetAttrib();
+    std::vector<std::array<Point, 3>> triangles;
+    for (const tinyobj::shape_t &shape : reader.GetShapes()) {
+        auto corner = shape.mesh.indices.begin();
+        for (size_t count : shape.mesh.num_face_vertices) {
+            std::vector<Vec3> outline;
+            std::vector<Point> points;
+            for (size_t i = 0; i < count; ++i, ++corner) {
+                const float *p = &all.vertices[size_t(corner->vertex_index) * 3];
+                const float *n = corner->normal_index < 0 ? nullptr : &all.normals[size_t(corner->normal_index) * 3];
+                points.push_back({p[0], p[1], p[2], n ? n[0] : 0, n ? n[1] : 0, n ? n[2] : 0});
+                outline.push_back({p[0], p[1], p[2]});
+            }
+            for (auto [a, b, c] : triangulate(outline))
+                triangles.push_back({points[a], points[b], points[c]});
+        }
+    }
+    return triangles;
+}
+
+// Positions to an ulp or so of tinyobjloader's own parser, normals as unit vectors.
+bool same_corner(const TriangleMesh &mesh, TriangleMesh::Corner corner, const Point &point) {
+    const Vec3 p = mesh.positions[corner.position], wanted{point[0], point[1], point[2]};
+    Vec3 n{point[3], point[4], point[5]};
+    const double size = length(n);
+    const Vec3 given = corner.normal == OPAL_NONE ? Vec3{} : mesh.normals[corner.normal];
+    return length(p - wanted) <= 1e-6 * length(wanted) && (size > 0 ? length(given - n * (1 / size)) <= 1e-6 : corner.normal == OPAL_NONE);
+}
+
 } // namespace
+
+TEST_CASE("well-formed files mean what tinyobjloader reads in them", "[obj]") {
+    std::vector<std::filesystem::path> files;
+    for (const char *folder : {"scenes", "../shared/scenes"}) {
+        std::error_code missing; // a clone has no ../shared
+        for (const auto &entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(OPAL_SOURCE_DIR) / folder, missing))
+            if (entry.path().extension() == ".obj")
+                files.push_back(entry.path());
+    }
+    REQUIRE(files.size() > 20);
+    for (const std::filesystem::path &file : files) {
+        INFO(file.string());
+        const TriangleMesh mesh = read_obj(file, {});
+        const auto expected = by_tinyobjloader(file);
+        size_t next = 0, found = 0; // those without area are left out of the mesh
+        for (const auto &triangle : mesh.triangles) {
+            const auto matches = [&](const std::array<Point, 3> &other) {
+                return same_corner(mesh, triangle[0], other[0]) && same_corner(mesh, triangle[1], other[1]) && same_corner(mesh, triangle[2], other[2]);
+            };
+            while (next < expected.size() && !matches(expected[next]))
+                ++next;
+            found += next++ < expected.size();
+        }
+        CHECK(found == mesh.triangles.size());
+        CHECK(expected.size() - found < 1 + expected.size() / 100);
+    }
+}
 
 TEST_CASE_METHOD(ObjFixture, "coordinates are read in double", "[obj]") {
     TriangleMesh mesh = read("v 0.1 1e-9 -3.25E2\nv +1 .5 2.\nv 0 1 123456.789012345\nf 1 2 3\n");
@@ -167,34 +232,34 @@ TEST_CASE_METHOD(ObjFixture, "small and thin triangles are kept", "[obj]") {
     CHECK(warnings().size() == before);
 }
 
-TEST_CASE_METHOD(ObjFixture, "no triangles at all is a warning", "[obj]") {
-    for (const char *text : {"", "v 0 0 0\n", "# only words\n"}) {
-        CHECK(read(text).triangles.empty());
-        CHECK(warnings().back() == file() + ": holds no triangles; the mesh is invisible");
-    }
+TEST_CASE_METHOD(ObjFixture, "no triangles at all is an error", "[obj]") {
+    for (const char *text : {"", "v 0 0 0\n", "# only words\n"})
+        CHECK(error_in(text) == ": holds no triangles");
+    CHECK(error_in(square + "f 1 1 2\nf 3 3 3\n") == ": holds no triangles: dropped 2 triangles without area");
 }
 
-TEST_CASE_METHOD(ObjFixture, "indices out of range fail at their line", "[obj]") {
-    CHECK(error_in(square + "f 1 2 3\nf 1 2 5\n") == ":6: vertex index 5 is out of range: the file has 4");
-    CHECK(error_in(square + "f 1 2 0\n") == ":5: vertex index 0 is out of range: 4 so far");
-    CHECK(error_in(square + "f 1 2 -5\n") == ":5: vertex index -5 is out of range: 4 so far");
-    CHECK(error_in(square + "f -2147483648 2 3\n") == ":5: vertex index -2147483648 is out of range: 4 so far");
-    CHECK(error_in(square + "vn 0 0 1\nf 1//1 2//2 3//1\n") == ":6: normal index 2 is out of range: the file has 1");
-    CHECK(error_in(square + "vt 0 0\nf 1/-2 2/1 3/1\n") == ":6: texture index -2 is out of range: 1 so far");
-    CHECK(error_in(square + "vt 0 0\nf 1/2 2/1 3/1\n") == ":6: texture index 2 is out of range: the file has 1");
-    CHECK(error_in(square + "f 1 2 99999999999\n") == ":5: '99999999999' is too large for an integer");
+TEST_CASE_METHOD(ObjFixture, "indices out of range fail at their place", "[obj]") {
+    CHECK(error_in(square + "f 1 2 3\nf 1 2 5\n") == ":6:7: vertex index 5 is out of range: the file has 4");
+    CHECK(error_in(square + "f 1 2 \\\n 5\n") == ":6:2: vertex index 5 is out of range: the file has 4");
+    CHECK(error_in(square + "f 1 2 0\n") == ":5:7: vertex index 0 is out of range: 4 so far");
+    CHECK(error_in(square + "f 1 2 -5\n") == ":5:7: vertex index -5 is out of range: 4 so far");
+    CHECK(error_in(square + "f -2147483648 2 3\n") == ":5:3: vertex index -2147483648 is out of range: 4 so far");
+    CHECK(error_in(square + "vn 0 0 1\nf 1//1 2//2 3//1\n") == ":6:8: normal index 2 is out of range: the file has 1");
+    CHECK(error_in(square + "vt 0 0\nf 1/-2 2/1 3/1\n") == ":6:3: texture index -2 is out of range: 1 so far");
+    CHECK(error_in(square + "vt 0 0\nf 1/2 2/1 3/1\n") == ":6:3: texture index 2 is out of range: the file has 1");
+    CHECK(error_in(square + "f 1 2 99999999999\n") == ":5:7: '99999999999' is too large for an integer");
 }
 
-TEST_CASE_METHOD(ObjFixture, "malformed numbers fail at their line", "[obj]") {
-    CHECK(error_in("v 0 0 0\nv nan 0 0\n") == ":2: 'nan' is not a finite number in single precision");
-    CHECK(error_in("v 0 0 0\n\nv 0 inf 0\n") == ":3: 'inf' is not a finite number in single precision");
-    CHECK(error_in("v 1e39 0 0\n") == ":1: '1e39' is not a finite number in single precision");
-    CHECK(error_in("v 0 0\n") == ":1: 'v' needs three numbers");
-    CHECK(error_in("v 0 0 1,5\n") == ":1: '1,5' is not a number");
-    CHECK(error_in("vn 0 NaN 1\n") == ":1: 'NaN' is not a finite number in single precision");
-    CHECK(error_in(square + "f 1 2 x\n") == ":5: 'x' is not an integer");
-    CHECK(error_in(square + "f 1 2 \\\n /1\n") == ":5: '' is not an integer");
-    CHECK(error_in(square + "f 1 2 1/1/1/1\n") == ":5: '1/1/1/1' has more than vertex/texture/normal");
+TEST_CASE_METHOD(ObjFixture, "malformed numbers fail at their place", "[obj]") {
+    CHECK(error_in("v 0 0 0\nv nan 0 0\n") == ":2:3: 'nan' is not a finite number in single precision");
+    CHECK(error_in("v 0 0 0\n\nv 0 inf 0\n") == ":3:5: 'inf' is not a finite number in single precision");
+    CHECK(error_in("v 1e39 0 0\n") == ":1:3: '1e39' is not a finite number in single precision");
+    CHECK(error_in("  v 0 0\n") == ":1:3: 'v' needs three numbers");
+    CHECK(error_in("v 0 0 1,5\n") == ":1:7: '1,5' is not a number");
+    CHECK(error_in("vn 0 NaN 1\n") == ":1:6: 'NaN' is not a finite number in single precision");
+    CHECK(error_in(square + "f 1 2 x\n") == ":5:7: 'x' is not an integer");
+    CHECK(error_in(square + "f 1 2 \\\n /1\n") == ":6:2: '' is not an integer");
+    CHECK(error_in(square + "f 1 2 1/1/1/1\n") == ":5:7: '1/1/1/1' has more than vertex/texture/normal");
 }
 
 TEST_CASE_METHOD(ObjFixture, "a missing file is named", "[obj]") {

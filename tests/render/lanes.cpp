@@ -13,7 +13,7 @@ using namespace opal::test;
 namespace {
 
 struct Difference {
-    size_t pixels_off = 0;  // by more than 1e-3
+    size_t pixels_off = 0;  // by more than 1e-4
     double means = 0;       // relative, over the other pixels
 };
 
@@ -23,7 +23,7 @@ Difference difference(const Film &a, const Film &b) {
     for (size_t p = 0; p < a.sum.size(); p++) {
         bool off = a.count[p] != b.count[p];
         for (int c = 0; c < 3; c++)
-            off = off || std::abs(a.sum[p][c] - b.sum[p][c]) > 1e-3 * std::max(std::abs(a.sum[p][c]), std::abs(b.sum[p][c]));
+            off = off || std::abs(a.sum[p][c] - b.sum[p][c]) > 1e-4 * std::max(std::abs(a.sum[p][c]), std::abs(b.sum[p][c]));
         d.pixels_off += off;
         for (int c = 0; c < 3 && !off; c++) {
             sum_a += a.sum[p][c];
