@@ -67,6 +67,25 @@ void allow_for_rare_hits(BoxSums &sums, const BoxSums &own, double sure_hits, do
     }
 }
 
+// Variance of a pixel's mean by the square of the mean around it, over the image: how far one hit moves a pixel.
+double relative_variance_of(const Estimate &e, size_t channel, const std::vector<PixelBox> &tiles) {
+    CompensatedSum variance, squares;
+    for (const PixelBox &tile : tiles)
+        if (const BoxSums sums = sum_box(e, channel, tile); std::isfinite(sums.mean) && std::isfinite(sums.variance)) {
+            const double pixels = double(tile.width) * tile.height;
+            variance.add(sums.variance * pixels * pixels);
+            squares.add(sums.mean * sums.mean * pixels);
+        }
+    return squares.value() > 0 ? variance.value() / squares.value() : 0;
+}
+
+// What the darker estimate lacks may be light that it finds by rare hits and has not met here.
+void allow_for_missed_hits(BoxSums &darker, const BoxSums &brighter, double relative_variance_a_pixel) {
+    const double lacking = brighter.mean - darker.mean;
+    if (lacking > 0 && std::isfinite(lacking))
+        darker.variance += lacking * std::abs(brighter.mean) * relative_variance_a_pixel;
+}
+
 TestResult judge(const BoxSums &a, const BoxSums &b, const TileOptions &o) {
     double variance = a.variance + b.variance, squares = a.variance_squares + b.variance_squares;
     double dof = squares == 0 ? std::numeric_limits<double>::infinity() : variance / squares * variance;
@@ -77,7 +96,7 @@ TestResult judge(const BoxSums &a, const BoxSums &b, const TileOptions &o) {
 struct Channel {
     const Estimate &a, &b;
     size_t index;
-    double quantum_a, quantum_b;
+    double quantum_a, quantum_b, relative_variance_a, relative_variance_b;
 };
 
 TestResult judge_tile(const Channel &c, const PixelBox &box, const TileOptions &o) {
@@ -87,9 +106,13 @@ TestResult judge_tile(const Channel &c, const PixelBox &box, const TileOptions &
         borrow_variance(a, own_b, c.b.samples / c.a.samples);
         borrow_variance(b, own_a, c.a.samples / c.b.samples);
     }
-    double mean = std::max(std::abs(a.mean), std::abs(b.mean)) / (double(box.width) * box.height);
+    const double pixels = double(box.width) * box.height, mean = std::max(std::abs(a.mean), std::abs(b.mean)) / pixels;
     allow_for_rare_hits(a, own_a, o.sure_hits, mean * c.quantum_a);
     allow_for_rare_hits(b, own_b, o.sure_hits, mean * c.quantum_b);
+    if (o.sure_hits > 0) {
+        allow_for_missed_hits(a, b, c.relative_variance_a / pixels);
+        allow_for_missed_hits(b, a, c.relative_variance_b / pixels);
+    }
     return judge(a, b, o);
 }
 
@@ -101,6 +124,13 @@ double equivalent_z(const TestResult &test) {
 PixelBox tile_box(const TileTest &t, const Estimate &e, size_t tile) {
     int x = int(tile % size_t(t.columns)) * t.size, y = int(tile / size_t(t.columns)) * t.size;
     return {x, y, std::min(t.size, e.width - x), std::min(t.size, e.height - y)};
+}
+
+std::vector<PixelBox> boxes_of(const TileTest &t, const Estimate &e) {
+    std::vector<PixelBox> boxes;
+    for (size_t tile = 0; tile < size_t(t.columns) * size_t(t.rows); ++tile)
+        boxes.push_back(tile_box(t, e, tile));
+    return boxes;
 }
 
 PixelBox join(const PixelBox &a, const PixelBox &b) {
@@ -178,21 +208,23 @@ TileTest tile_test(const Estimate &a, const Estimate &b, const TileOptions &opti
     t.columns = (a.width + t.size - 1) / t.size;
     t.rows = (a.height + t.size - 1) / t.size;
     t.channels = a.mean.size();
-    size_t tiles = size_t(t.columns) * size_t(t.rows);
+    const std::vector<PixelBox> boxes = boxes_of(t, a);
+    size_t tiles = boxes.size();
     double smallest = 1;
     for (size_t channel = 0; channel < t.channels; ++channel) {
-        const Channel both{a, b, channel, quantum_of(a, channel), quantum_of(b, channel)};
+        const Channel both{a, b, channel, quantum_of(a, channel), quantum_of(b, channel), relative_variance_of(a, channel, boxes),
+                           relative_variance_of(b, channel, boxes)};
         const PixelBox everything{0, 0, a.width, a.height};
         t.whole.push_back(judge(sum_box(a, channel, everything), sum_box(b, channel, everything), options));
         smallest = std::min(smallest, t.whole.back().p_value);
         for (size_t tile = 0; tile < tiles; ++tile) {
-            TestResult test = judge_tile(both, tile_box(t, a, tile), options);
+            TestResult test = judge_tile(both, boxes[tile], options);
             t.z.push_back(equivalent_z(test));
             t.p.push_back(test.p_value);
             smallest = std::min(smallest, test.p_value);
             if (t.z.size() == 1 || std::abs(t.z.back()) > std::abs(t.worst_z)) {
                 t.worst_channel = channel;
-                t.worst_tile = tile_box(t, a, tile);
+                t.worst_tile = boxes[tile];
                 t.worst_z = t.z.back();
             }
         }

@@ -154,6 +154,38 @@ TEST_CASE("light by rare samples is no difference", "[stats_tiles]") {
     CHECK(tile_test(estimate(dark, 256), estimate(bright, 4096)).rejected(level));
 }
 
+TEST_CASE("rare light on top of light without noise is no difference, a deficit of common light is", "[stats_tiles]") {
+    // Hits of 1 everywhere, rare ones in the first tile, whose pixels are a lamp of 0.4 besides.
+    auto lamp = [](unsigned seed, int samples, double sure) {
+        std::mt19937_64 rng(seed);
+        std::binomial_distribution<int> common(samples, 0.02), rare(samples, 2e-5);
+        Picture picture;
+        picture.mean.resize(1), picture.variance.resize(1);
+        for (int i = 0; i < width * height; ++i) {
+            const bool tile = i % width < 8 && i / width < 8;
+            const double mean = double((tile ? rare : common)(rng)) / samples;
+            picture.mean[0].push_back(float(mean + (tile ? sure : 0)));
+            picture.variance[0].push_back(float(mean * (1 - mean) / (samples - 1)));
+        }
+        return picture;
+    };
+    auto rejects = [](const Picture &a, const Picture &b, double sure_hits) {
+        Estimate x = a.estimate(), y = b.estimate();
+        x.samples = y.samples = 0, x.dof = 255, y.dof = 65535;
+        return tile_test(x, y, TileOptions{.sure_hits = sure_hits}).rejected(0.05);
+    };
+    int rejected = 0, unaided = 0;
+    for (unsigned seed = 0; seed < 60; ++seed) {
+        const Picture few = lamp(2 * seed, 256, 0.4), many = lamp(2 * seed + 1, 65536, 0.4);
+        rejected += rejects(few, many, TileOptions{}.sure_hits);
+        unaided += rejects(few, many, 0);
+    }
+    CAPTURE(rejected, unaided);
+    CHECK(binomial_test(rejected, 60, 0.05).p_value > level);
+    CHECK(unaided > 30); // the negative control
+    CHECK(rejects(lamp(1, 256, 0.4), lamp(2, 65536, 0.42), TileOptions{}.sure_hits));
+}
+
 TEST_CASE("NaN, negative variances and images that don't fit are rejected", "[stats_tiles]") {
     Picture a = render(4000), b = render(4001);
     for (float bad : {NAN, INFINITY}) {
