@@ -116,12 +116,12 @@ void tell_result(const nlohmann::json &report, const Film &film) {
 
 // --strategy auto: sets the strategy of the sweep's preset `course` that costs least by short pilots, and says why. Their
 // samples have indices of their own and are in no image.
-nlohmann::json choose_strategy(SceneDescription &scene, const Device &device, const Sources &sources, int lanes, unsigned seed) {
+nlohmann::json choose_strategy(SceneDescription &scene, const Device &device, const Sources &sources, unsigned seed) {
     constexpr double pilot_seconds = 0.25;
     const std::vector<Candidate> candidates = parse_strategies(scene, {"course"}, {});
     std::vector<Pilot> pilots;
     for (const Candidate &c : candidates) {
-        Measured measured(device, c, sources, lanes);
+        Measured measured(device, c, sources);
         pilots.push_back(run_pilot(measured, seed, pilot_seconds));
     }
     const std::vector<double> costs = pilot_costs(pilots);
@@ -162,7 +162,7 @@ int run(const Options &o, const CLI::App &app) {
     const int lanes = lanes_for(pick.info, scene.strategy.lanes, scene.strategy.math);
     const Device device = open_device(pick.info);
     const Sources sources = load_sources(o.scene);
-    const nlohmann::json choice = o.strategy.empty() ? nlohmann::json() : choose_strategy(scene, device, sources, lanes, o.seed);
+    const nlohmann::json choice = o.strategy.empty() ? nlohmann::json() : choose_strategy(scene, device, sources, o.seed);
     Stopwatch bvh;
     const FlatScene flat = flatten(scene, lanes);
     seconds.bvh = bvh.seconds();

@@ -16,6 +16,9 @@
 #include <iostream>
 #include <iterator>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 namespace opal {
 
 namespace {
@@ -25,7 +28,8 @@ struct Options {
     std::vector<std::string> strategies, math;
     std::vector<unsigned> spp = {4, 16, 64};
     unsigned replicates = 5, seed = 0, reference_spp = 0, width = 0;
-    std::string device, reference, budget, out;
+    std::vector<std::string> devices;
+    std::string reference, budget, out;
     bool quiet = false;
 };
 
@@ -57,24 +61,24 @@ Image read_reference(const std::string &file, const SceneDescription &scene) {
         throw Error(fmt::format("--reference {}: has {} x {} pixels, the scene {} x {}", file, image.width, image.height, scene.camera.width,
                                 scene.camera.height));
     for (const char *channel : {"R", "G", "B"})
-        image.get(channel);
+        if (!image.find(channel))
+            throw Error(fmt::format("--reference {}: has no layer {}, which a render has", file, channel));
     const auto of = image.metadata.find("opal.scene");
     if (of != image.metadata.end() && std::filesystem::path(of->second).filename() != scene.file.filename())
         throw Error(fmt::format("--reference {}: is an image of {}, not of {}", file, of->second, scene.file.string()));
     return image;
 }
 
-SweepRecord fresh_record(const Options &o, const SceneDescription &scene, const DeviceInfo &device) {
+SweepRecord fresh_record(const Options &o, const SceneDescription &scene, const std::vector<DevicePick> &devices) {
     SweepRecord r;
     r.version = OPAL_VERSION;
     r.scene = scene.file.string();
     r.scene_hash = hash_of(scene);
-    r.device = device.name;
-    r.driver = device.driver;
+    for (const DevicePick &d : devices)
+        r.devices.push_back({d.info.index, d.info.name, d.info.driver});
     r.reference_file = o.reference;
     r.width = scene.camera.width;
     r.height = scene.camera.height;
-    r.lanes = lanes_for(device, scene.strategy.lanes, scene.strategy.math);
     r.command = command_line();
     r.integrator = scene.integrator_type;
     r.replicates = o.replicates;
@@ -94,6 +98,33 @@ std::filesystem::path make_folder(const Options &o, const SceneDescription &scen
     return folder;
 }
 
+std::vector<DevicePick> pick_devices(const Options &o) {
+    const std::vector<DeviceInfo> known = list_devices();
+    std::vector<DevicePick> picks;
+    for (const std::string &wanted : o.devices.empty() ? std::vector<std::string>{""} : o.devices) {
+        picks.push_back(pick_device(wanted, known));
+        for (size_t i = 0; i + 1 < picks.size(); i++)
+            if (picks[i].info.index == picks.back().info.index)
+                throw Error(fmt::format("--device: '{}' and '{}' are the same device, {}", o.devices[i], wanted, picks[i].info.name));
+    }
+    return picks;
+}
+
+// Each strategy on each device; their names tell which where there are several.
+std::vector<Candidate> cross(const std::vector<Candidate> &strategies, const std::vector<DevicePick> &devices) {
+    if (devices.size() == 1)
+        return strategies;
+    std::vector<Candidate> all;
+    for (size_t d = 0; d < devices.size(); d++)
+        for (Candidate c : strategies) {
+            c.device = d;
+            c.name += fmt::format(",device={}", devices[d].info.index);
+            c.label += fmt::format("; device {}", devices[d].info.index);
+            all.push_back(c);
+        }
+    return all;
+}
+
 void write_results(const SweepRecord &record, const std::filesystem::path &folder) {
     const SweepSummary summary = summarise(record);
     write_safely(folder / "sweep.csv", csv(summary));
@@ -101,6 +132,45 @@ void write_results(const SweepRecord &record, const std::filesystem::path &folde
     for (const std::string &sentence : verdict(record, summary))
         std::cout << sentence << "\n";
     info(fmt::format("wrote   {}", (folder / "index.html").string()));
+}
+
+using Part = void (*)(const SweepPlan &, const Device &, const std::vector<Candidate> &, SweepRecord &);
+
+int run_part(Part part, const SweepPlan &plan, const DevicePick &pick, const std::vector<Candidate> &candidates, SweepRecord &record) {
+    const Device device = open_device(pick.info);
+    if (part == measure_points)
+        info(fmt::format("device  {}: {} (driver {}; {})", pick.info.index, pick.info.name, pick.info.driver, pick.reason));
+    watch_interrupts();
+    try {
+        part(plan, device, candidates, record);
+    } catch (const Interrupted &) {
+        warn("interrupted: the same command goes on where it stopped");
+        return exit_interrupted;
+    }
+    return 0;
+}
+
+// The same in a process of its own, for one process loads one driver; what it measured is in the folder.
+int run_part_apart(Part part, const SweepPlan &plan, const DevicePick &pick, const std::vector<Candidate> &candidates, SweepRecord &record) {
+    const pid_t child = fork();
+    if (child < 0)
+        throw Error("no process could be started for device " + pick.info.name);
+    if (child == 0) {
+        int code = 1;
+        try {
+            code = run_part(part, plan, pick, candidates, record);
+        } catch (const std::exception &error) {
+            fmt::print(stderr, "error: {}\n", error.what());
+        }
+        _exit(code);
+    }
+    watch_interrupts(); // the child has it too, and ends
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+    record = load_record(plan.folder);
+    if (WIFSIGNALED(status))
+        throw Error(fmt::format("{}: the driver ended the process by signal {}", pick.info.name, WTERMSIG(status)));
+    return WEXITSTATUS(status);
 }
 
 int run(const Options &o) {
@@ -111,7 +181,7 @@ int run(const Options &o) {
         scene.camera.height = std::max(1, int(std::lround(double(o.width) * scene.camera.height / scene.camera.width)));
         scene.camera.width = int(o.width);
     }
-    const std::vector<Candidate> candidates = parse_strategies(scene, o.strategies, o.math);
+    const std::vector<Candidate> strategies = parse_strategies(scene, o.strategies, o.math);
     const Sources sources = load_sources(o.scene);
     SweepPlan plan{.folder = {}, .seed = o.seed, .reference_spp = o.reference_spp, .sources = &sources};
     Image reference;
@@ -119,20 +189,22 @@ int run(const Options &o) {
         reference = read_reference(o.reference, scene);
         plan.reference = &reference;
     }
-    const DevicePick pick = pick_device(o.device, list_devices());
-    const SweepRecord fresh = fresh_record(o, scene, pick.info);
+    const std::vector<DevicePick> devices = pick_devices(o);
+    const std::vector<Candidate> candidates = cross(strategies, devices);
+    const SweepRecord fresh = fresh_record(o, scene, devices);
     plan.folder = make_folder(o, scene);
     SweepRecord record = resume(plan.folder, fresh);
+    for (const Candidate &c : candidates) // all rows now: references to them stay good
+        record.strategy(c.name, c.label).device = c.device;
     save(record, plan.folder); // the folder can be written
-    const Device device = open_device(pick.info);
-    info(fmt::format("device  {} (driver {}; {}), {} lanes", pick.info.name, pick.info.driver, pick.reason, record.lanes));
-    watch_interrupts();
-    try {
-        run_sweep(plan, device, candidates, record);
-    } catch (const Interrupted &) {
-        warn("interrupted: the same command goes on where it stopped");
-        return exit_interrupted;
-    }
+    for (const Part part : {measure_points, take_pictures})
+        for (size_t d = 0; d < devices.size(); d++) {
+            std::vector<Candidate> own;
+            std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(own), [&](const Candidate &c) { return c.device == d; });
+            const auto run_it = devices.size() == 1 ? run_part : run_part_apart;
+            if (const int code = run_it(part, plan, devices[d], own, record))
+                return code;
+        }
     write_results(record, plan.folder);
     return 0;
 }
@@ -142,7 +214,10 @@ int run(const Options &o) {
 RunCommand setup_sweep(CLI::App &app) {
     auto o = std::make_shared<Options>();
     add_scene_options(app, o->scene);
-    add_device_option(app, o->device);
+    app.remove_option(app.get_option("--math")); // here it takes several
+    app.add_option("--math", o->math, "Cross the strategies with these: precise,fast")->delimiter(',')->type_name("MODE,...")->group("Strategy");
+    app.add_option("--device", o->devices, "Cross the strategies with these: each an index of `opal devices`, cpu, gpu, or part of a name "
+                                           "[the first GPU, else the CPU]")->delimiter(',')->type_name("DEVICE,...");
     app.add_option("--strategies", o->strategies,
                    "course, all, or lists axis=value,... after the scene; the first is the baseline [course]\n"
                    "  course: hemisphere sampling, light sampling and MIS of both kinds; all: samplers and choices besides")
@@ -155,7 +230,6 @@ RunCommand setup_sweep(CLI::App &app) {
     app.add_option("--reference-spp", o->reference_spp, "Samples per pixel of the reference that is made [8 times the largest --spp]");
     app.add_option("--budget", o->budget, "Kernel time for all of it: leaves out the largest --spp until it fits")->type_name("TIME");
     app.add_option("--width", o->width, "Pixels; keeps the aspect (default: the scene's)")->check(CLI::Range(1, 65535));
-    app.add_option("--math-modes", o->math, "Cross the strategies with these: precise,fast")->delimiter(',')->type_name("MODE,...");
     app.add_option("-o,--output", o->out, "Folder; a sweep that is there already goes on [SCENE_sweep]")->type_name("FOLDER");
     app.add_flag("--quiet", o->quiet, "Print the verdict, warnings and errors only");
     return [o] { return run(*o); };

@@ -10,10 +10,6 @@
 
 namespace opal {
 
-namespace {
-
-using Choices = std::array<int, AXIS_COUNT>;
-
 std::vector<std::string> split(const std::string &text, char separator) {
     std::vector<std::string> parts;
     std::istringstream stream(text);
@@ -25,6 +21,10 @@ std::vector<std::string> split(const std::string &text, char separator) {
     return parts;
 }
 
+namespace {
+
+using Choices = std::array<int, AXIS_COUNT>;
+
 std::map<std::string, std::string> overrides_of(const std::string &text) {
     std::map<std::string, std::string> overrides;
     for (const std::string &part : split(text, ',')) {
@@ -35,11 +35,6 @@ std::map<std::string, std::string> overrides_of(const std::string &text) {
             throw Error(fmt::format("'{}' is given twice", part.substr(0, equals)));
     }
     return overrides;
-}
-
-bool is_same(const Strategy &a, const Strategy &b) {
-    return a.choices == b.choices && a.rr_prob == b.rr_prob && a.rr_depth == b.rr_depth && a.max_depth == b.max_depth &&
-           a.math == b.math && a.lanes == b.lanes && a.specialise == b.specialise;
 }
 
 // What of a scene decides which axes matter, with its strategy; the shapes are left out, so that copies are cheap.
@@ -171,21 +166,30 @@ std::string name_of(const Choices &c, const std::vector<Choices> &set) {
 
 } // namespace
 
+bool is_same(const Strategy &a, const Strategy &b) {
+    return a.choices == b.choices && a.rr_prob == b.rr_prob && a.rr_depth == b.rr_depth && a.max_depth == b.max_depth &&
+           a.math == b.math && a.lanes == b.lanes && a.specialise == b.specialise;
+}
+
+NamedStrategy named_strategy(const SceneDescription &scene, const std::string &text) {
+    SceneDescription trial = scene;
+    try {
+        override_strategy(trial.strategy, overrides_of(text));
+        check_strategy(trial);
+    } catch (const Error &error) {
+        throw Error(fmt::format("strategy '{}': {}", text, error.what()));
+    }
+    return {text, trial.strategy};
+}
+
 std::vector<NamedStrategy> named_strategies(const SceneDescription &scene, const std::string &text) {
     std::vector<NamedStrategy> strategies;
-    SceneDescription trial = scene;
     for (const std::string &part : split(text, ';')) {
-        trial.strategy = scene.strategy;
-        try {
-            override_strategy(trial.strategy, overrides_of(part));
-            check_strategy(trial);
-        } catch (const Error &error) {
-            throw Error(fmt::format("strategy '{}': {}", part, error.what()));
-        }
+        const NamedStrategy named = named_strategy(scene, part);
         for (const NamedStrategy &other : strategies)
-            if (is_same(other.strategy, trial.strategy))
+            if (is_same(other.strategy, named.strategy))
                 throw Error(fmt::format("strategy '{}' is the same as '{}' on this scene", part, other.name));
-        strategies.push_back({part, trial.strategy});
+        strategies.push_back(named);
     }
     return strategies;
 }

@@ -10,8 +10,15 @@ struct NamedStrategy {
     Strategy strategy;
 };
 
-// 'lighting=mis,mis=power;lighting=emitter': each changes the scene's strategy as the command line's options would. Throws
-// Error for what does not exist, makes no sense on this scene, or is there twice.
+// 'lighting=mis,mis=power' changes the scene's strategy as the command line's options would. Throws Error for what does not exist
+// or makes no sense on this scene.
+NamedStrategy named_strategy(const SceneDescription &scene, const std::string &text);
+bool is_same(const Strategy &a, const Strategy &b);
+
+// 'a;b' in its parts, without blanks around them.
+std::vector<std::string> split(const std::string &text, char separator);
+
+// 'lighting=mis,mis=power;lighting=emitter'. Throws Error besides where one is there twice.
 std::vector<NamedStrategy> named_strategies(const SceneDescription &scene, const std::string &text);
 
 // The combinations of choices that estimate what the scene's integrator does, without bias and in finite time, each once: an

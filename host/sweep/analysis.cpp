@@ -14,15 +14,30 @@ namespace {
 using stats::Moments;
 using stats::Sample;
 
+template <class Value> std::vector<double> values_of(const Point &point, Value value) {
+    std::vector<double> values;
+    for (const Replicate &r : point.replicates)
+        values.push_back(value(r));
+    return values;
+}
+
 template <class Value> Sample sample_of(const Point &point, Value value) {
     Moments moments;
-    for (const Replicate &r : point.replicates)
-        moments.add(value(r));
+    for (double v : values_of(point, value))
+        moments.add(v);
     return moments.sample();
 }
 
-Sample mse_seconds(const Point &p) { return sample_of(p, [](const Replicate &r) { return r.mse * r.seconds; }); }
-Sample rel_mse_seconds(const Point &p) { return sample_of(p, [](const Replicate &r) { return r.rel_mse * r.seconds; }); }
+double mse_seconds(const Replicate &r) { return r.mse * r.seconds; }
+double rel_mse_seconds(const Replicate &r) { return r.rel_mse * r.seconds; }
+
+// Of two points whose replicates went in rounds, so that what slowed one slowed the other.
+template <class Value> stats::Interval ratio_of(const Point &a, const Point &b, Value value) {
+    std::vector<double> x = values_of(a, value), y = values_of(b, value);
+    const size_t rounds = std::min(x.size(), y.size());
+    x.resize(rounds), y.resize(rounds);
+    return stats::paired_ratio_interval(x, y, sweep_confidence);
+}
 
 // Replicates are independent; the samples of one replicate's points are not, so that each gives one slope.
 stats::Interval slope_of(const StrategyRecord &s) {
@@ -75,7 +90,7 @@ SweepSummary summarise(const SweepRecord &record) {
                                 stats::positive_mean_interval(mean(&Replicate::rel_mse), sweep_confidence)});
         }
         s.slope = slope_of(r);
-        s.cost = stats::positive_mean_interval(rel_mse_seconds(r.points.back()), sweep_confidence);
+        s.cost = stats::positive_mean_interval(sample_of(r.points.back(), rel_mse_seconds), sweep_confidence);
         judge_bias(s, r.points.back(), record.reference);
         summary.strategies.push_back(std::move(s));
     }
@@ -84,8 +99,8 @@ SweepSummary summarise(const SweepRecord &record) {
     summary.best = size_t(std::min_element(all.begin(), all.end(), cheaper) - all.begin());
     for (StrategySummary &s : all) {
         const Point &own = s.record->points.back(), &first = all[0].record->points.back(), &best = all[summary.best].record->points.back();
-        s.slower = stats::ratio_interval(rel_mse_seconds(own), rel_mse_seconds(best), sweep_confidence);
-        s.efficiency = stats::ratio_interval(mse_seconds(first), mse_seconds(own), sweep_confidence);
+        s.slower = ratio_of(own, best, rel_mse_seconds);
+        s.efficiency = ratio_of(first, own, mse_seconds);
         if (&s == &all[summary.best])
             s.slower = {1, 1, 1};
         if (&s == &all[0])

@@ -7,18 +7,23 @@
 
 namespace opal {
 
-Measured::Measured(const Device &device, const Candidate &candidate, const Sources &sources, int lanes)
-    : device_(device), candidate_(candidate), sources_(sources), lanes_(lanes) {
+Measured::Measured(const Device &device, const Candidate &candidate, const Sources &sources)
+    : device_(device), candidate_(candidate), sources_(sources) {
     compile(candidate.scene.spp);
+}
+
+int Measured::lanes() const {
+    const Strategy &s = candidate_.scene.strategy;
+    return lanes_for(device_.info, s.lanes, s.math);
 }
 
 void Measured::compile(unsigned spp) {
     SceneDescription scene = candidate_.scene;
     scene.spp = compiled_spp_ = spp;
     renderer_.reset();
-    flat_ = std::make_unique<FlatScene>(flatten(scene, lanes_));
+    flat_ = std::make_unique<FlatScene>(flatten(scene, lanes()));
     RenderOptions options;
-    options.build = {.lanes = lanes_, .math = scene.strategy.math, .kernels = "kernels/render.cl"};
+    options.build = {.lanes = lanes(), .math = scene.strategy.math, .kernels = "kernels/render.cl"};
     options.sources = &sources_;
     renderer_ = std::make_unique<Renderer>(device_, *flat_, options);
 }

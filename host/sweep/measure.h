@@ -12,7 +12,7 @@ namespace opal {
 // One strategy, compiled for a device.
 class Measured {
 public:
-    Measured(const Device &device, const Candidate &candidate, const Sources &sources, int lanes);
+    Measured(const Device &device, const Candidate &candidate, const Sources &sources);
 
     struct Rendered {
         Film film;
@@ -23,13 +23,13 @@ public:
     Rendered render(unsigned spp, unsigned seed, unsigned first = 0);
 
     double compile_seconds() const { return renderer_->compile_seconds(); }
+    int lanes() const;
 
 private:
     void compile(unsigned spp);
     const Device &device_;
     const Candidate &candidate_;
     const Sources &sources_;
-    int lanes_;
     unsigned compiled_spp_ = 0; // of stratified samples: their strata belong to one number of samples
     std::unique_ptr<FlatScene> flat_;
     std::unique_ptr<Renderer> renderer_;

@@ -30,15 +30,26 @@ svg { width: 100%; font: 13px system-ui, sans-serif } svg text { fill: #222 }
 .strategy:hover path { stroke-width: 5 } svg:hover .strategy { opacity: .25 } svg:hover .strategy:hover { opacity: 1 }
 svg:not(:has(.strategy:hover)) .strategy { opacity: 1 }
 .grid { display: grid; grid-template-columns: repeat(auto-fill, minmax(300px, 1fr)); gap: 1em }
-figure { margin: 0 } figure img { width: 100%; cursor: zoom-in; image-rendering: pixelated }
-figure.large { grid-column: 1 / -1 } figure.large img { cursor: zoom-out }
-figcaption { font-size: .9em } code, pre { background: #f4f4f4; padding: .1em .3em } pre { padding: .8em; overflow: auto }
+figure { margin: 0 } .lens { overflow: hidden; cursor: zoom-in } .lens img { display: block; width: 100%; image-rendering: pixelated }
+figure.large { grid-column: 1 / -1 } figure.large .lens { cursor: zoom-out } .lens + .lens { margin-top: 4px }
+figcaption { font-size: .9em } code, pre { background: #f4f4f4; padding: .1em .3em } pre { padding: .8em; white-space: pre-wrap; overflow-wrap: anywhere }
 </style>
 )";
 
 const char *const tail = R"(<script>
-for (const image of document.querySelectorAll('figure img'))
-    image.onclick = () => image.parentElement.classList.toggle('large');
+const lenses = [...document.querySelectorAll('.lens')];
+const zoom = (x, y, scale) => lenses.forEach(lens => {
+    lens.firstChild.style.transformOrigin = `${100 * x}% ${100 * y}%`;
+    lens.firstChild.style.transform = `scale(${scale})`;
+});
+for (const lens of lenses) {
+    lens.onmousemove = event => {
+        const box = lens.getBoundingClientRect();
+        zoom((event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height, 4);
+    };
+    lens.onmouseleave = () => zoom(0, 0, 1);
+    lens.onclick = () => lens.parentElement.classList.toggle('large');
+}
 </script>
 </body></html>
 )";
@@ -64,7 +75,7 @@ std::string table(const SweepSummary &summary) {
     std::string html = "<table><tr><th>strategy</th>";
     for (double level : levels)
         html += fmt::format("<th>time to<br>relMSE {:g} %</th>", 100 * level);
-    html += "<th>time relative<br>to the best</th><th>efficiency<br>1 / (MSE &times; s)<br>relative to the first</th><th>slope</th><th>bias</th></tr>\n";
+    html += "<th>time relative<br>to the best</th><th>efficiency<br>1 / (MSE &times; s)<br>relative to the first</th><th>slope</th><th>bias</th><th>compile</th></tr>\n";
     for (size_t i = 0; i < summary.strategies.size(); i++) {
         const StrategySummary &s = summary.strategies[i];
         html += fmt::format("<tr><td><span class='dot' style='background:{}'></span>{}</td>", strategy_color(i), html_text(s.record->label));
@@ -73,9 +84,11 @@ std::string table(const SweepSummary &summary) {
         const bool best = i == summary.best, first = i == 0;
         html += best ? "<td>the best</td>" : cell(s.slower, [](double x) { return number(x) + "&times;"; }, bounded(s.slower));
         html += first ? "<td>1</td>" : cell(s.efficiency, number, bounded(s.efficiency));
-        html += cell(s.slope, [](double x) { return fmt::format("{:.3f}", x); }, std::isfinite(s.slope.high));
-        html += s.bias_p < bias_level(summary) ? fmt::format("<td><b>{:+.2g} %</b><small>p = {:.1g}</small></td></tr>\n", 100 * s.bias, s.bias_p)
-                                               : "<td>none seen</td></tr>\n";
+        html += std::isfinite(s.slope.estimate) ? cell(s.slope, [](double x) { return fmt::format("{:.3f}", x); }, std::isfinite(s.slope.high))
+                                                : "<td>&ndash;</td>";
+        html += s.bias_p < bias_level(summary) ? fmt::format("<td><b>{:+.2g} %</b><small>p = {:.1g}</small></td>", 100 * s.bias, s.bias_p)
+                                               : "<td>none seen</td>";
+        html += fmt::format("<td>{}</td></tr>\n", seconds_text(s.record->compile_seconds));
     }
     return html + "</table>\n";
 }
@@ -83,7 +96,7 @@ std::string table(const SweepSummary &summary) {
 std::string embedded(const std::filesystem::path &png, const std::string &what) {
     std::ifstream stream(png, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-    return fmt::format("<img alt=\"{}\" title=\"{}\" src=\"data:image/png;base64,{}\">", what, what, base64(bytes));
+    return fmt::format("<div class='lens'><img alt=\"{}\" title=\"{}\" src=\"data:image/png;base64,{}\"></div>", what, what, base64(bytes));
 }
 
 std::string pictures(const SweepSummary &summary, const std::filesystem::path &folder) {
@@ -101,14 +114,23 @@ std::string pictures(const SweepSummary &summary, const std::filesystem::path &f
     return html + "</div>\n";
 }
 
+std::string devices_of(const SweepRecord &r) {
+    std::string text;
+    for (const DeviceRecord &d : r.devices)
+        text += fmt::format("{}device {}, {} (driver {})", text.empty() ? "" : ", and ", d.index, d.name, d.driver);
+    return text;
+}
+
 std::string how_measured(const SweepRecord &r) {
     const ReferenceRecord &ref = r.reference;
-    std::string html = fmt::format("<p>{}, {} &times; {} pixels, on {} (driver {}; {} lanes), by opal {}. Seconds are the device's own kernel times; compiling is "
-                                   "not among them. Each point is the mean of {} renders with seeds of their own, and an interval holds the true "
-                                   "mean with 95 % confidence: Student's t, on the logarithm for errors, times and their ratios.</p>\n",
-                                   html_text(r.scene), r.width, r.height, html_text(r.device), html_text(r.driver), r.lanes, r.version, r.replicates);
+    std::string html = fmt::format("<p>{}, {} &times; {} pixels, on {}, by opal {}. Seconds are the device's own kernel times; compiling is not among them. "
+                                   "Each point is the mean of {} renders with seeds of their own, made in rounds: one of every strategy, then the next, "
+                                   "so that what disturbed the machine disturbed all. An interval holds the true value with 95 % confidence: "
+                                   "Student's t, on the logarithm for errors, times and their ratios, by rounds for ratios.</p>\n",
+                                   html_text(r.scene), r.width, r.height, html_text(devices_of(r)), r.version, r.replicates);
     html += "<p><b>relMSE</b> is the mean over pixels and channels of (image &minus; reference)&sup2; / (reference&sup2; + (1 % of the reference's mean)&sup2;): "
-            "1 % is an image whose typical error is a tenth of each pixel's value. ";
+            "1 % is an image whose typical error is a tenth of each pixel's value. It asks the same of dark and bright pixels, where <b>MSE</b>, on which the "
+            "column of efficiencies rests, is decided by the brightest: the two may rank differently. ";
     html += ref.spp ? fmt::format("The reference has {} samples per pixel of <code>{}</code> ({:.3g} s), two halves of samples that no other image here "
                                   "uses; what its own noise adds to the errors is estimated from the halves' difference and subtracted.</p>\n",
                                   ref.spp, html_text(ref.made_by), ref.seconds)
@@ -116,10 +138,19 @@ std::string how_measured(const SweepRecord &r) {
                                   ref.variance_known ? "its variance, kept in its layers, is subtracted" : "it holds no variance, so that its own noise counts as error");
     html += "<p><b>slope</b>: of log MSE against log samples per pixel; &minus;1 for independent samples, which is why the time to an error "
             "follows from the largest render. A strategy whose samples are not independent has times without intervals, along its own slope. "
-            "<b>bias</b>: of the mean luminance against the reference, where a test at level 1 % over all strategies sees one.</p>\n";
+            "<b>bias</b>: of the mean luminance against the reference, where a test at level 1 % over all strategies sees one. <b>compile</b>: seconds until the "
+            "kernel was ready when it was first built here; a driver's cache makes it shorter.</p>\n";
     if (!r.left_out_spp.empty())
         html += fmt::format("<p>Left out for the budget of {:g} s: {} samples per pixel.</p>\n", r.budget, fmt::join(r.left_out_spp, ", "));
     return html;
+}
+
+unsigned long long invalid_samples(const StrategyRecord &s) {
+    unsigned long long count = 0;
+    for (const Point &p : s.points)
+        for (const Replicate &r : p.replicates)
+            count += r.invalid;
+    return count;
 }
 
 std::string list_of(const std::vector<std::string> &sentences) {
@@ -135,7 +166,10 @@ std::vector<std::string> verdict(const SweepRecord &record, const SweepSummary &
     const StrategySummary &best = summary.strategies[summary.best];
     constexpr double level = 0.01;
     const double seconds = best.time_to(level).estimate;
-    std::vector<std::string> sentences = {fmt::format("On {} and {}, {} is the fastest: it {} relMSE 1 % in {}.", record.scene, record.device, best.record->label,
+    std::string where = std::filesystem::path(record.scene).filename().string();
+    for (const DeviceRecord &d : record.devices)
+        where += fmt::format("{}{}", record.devices.size() == 1 ? " and " : &d == &record.devices[0] ? " on " : " and ", d.name);
+    std::vector<std::string> sentences = {fmt::format("On {}, {} is the fastest: it {} relMSE 1 % in {}.", where, best.record->label,
                                                       seconds > best.points.back().seconds ? "would reach" : "reaches", seconds_text(seconds))};
     std::vector<const StrategySummary *> others;
     for (const StrategySummary &s : summary.strategies)
@@ -152,6 +186,9 @@ std::vector<std::string> verdict(const SweepRecord &record, const SweepSummary &
         if (s.bias_p < bias_level(summary))
             sentences.push_back(fmt::format("{} is biased: its mean luminance is {:+.2g} % off the reference (p = {:.1g}).", s.record->label,
                                             100 * s.bias, s.bias_p));
+    for (const StrategySummary &s : summary.strategies)
+        if (const unsigned long long invalid = invalid_samples(*s.record))
+            sentences.push_back(fmt::format("{}: {} samples were NaN or infinite and are left out.", s.record->label, invalid));
     return sentences;
 }
 
@@ -164,7 +201,7 @@ std::string html_page(const SweepRecord &record, const SweepSummary &summary, co
     html += convergence_plot(summary);
     html += "<h2>Time to an error</h2>\n<p>Kernel seconds, extrapolated where no render took as long. Small print: 95 % intervals.</p>\n" + table(summary);
     html += "<h2>What each gives in the same time</h2>\n<p>Under each image its error, |image &minus; reference| / reference: dark blue is none, yellow is as "
-            "large as the pixel itself. Click to enlarge.</p>\n";
+            "large as the pixel itself. Point at one to see the same place of all four times as large; click to enlarge.</p>\n";
     html += pictures(summary, folder);
     html += "<h2>How it was measured</h2>\n" + how_measured(record);
     html += "<h2>To repeat it</h2>\n<pre>" + html_text(record.command) + "</pre>\n";

@@ -11,12 +11,13 @@
 namespace opal {
 
 // The keys of sweep.json are the members' names.
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Replicate, seed, seconds, mse, rel_mse, mean_luminance)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Replicate, seed, seconds, mse, rel_mse, mean_luminance, invalid)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Point, spp, replicates)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Shot, spp, seconds, rel_mse, file)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StrategyRecord, name, label, independent, compile_seconds, pilot_cost, pilot_seconds_a_sample, points, shot)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceRecord, index, name, driver)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StrategyRecord, name, label, device, lanes, independent, compile_seconds, pilot_cost, pilot_seconds_a_sample, points, shot)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReferenceRecord, made_by, spp, seconds, mean_luminance, stderr_luminance, variance_known)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SweepRecord, version, scene, scene_hash, device, driver, reference_file, width, height, lanes, command,
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SweepRecord, version, scene, scene_hash, reference_file, devices, width, height, command,
                                    integrator, replicates, spp, left_out_spp, budget, reference, strategies)
 
 StrategyRecord &SweepRecord::strategy(const std::string &name, const std::string &label) {
@@ -29,19 +30,23 @@ StrategyRecord &SweepRecord::strategy(const std::string &name, const std::string
     return added;
 }
 
-SweepRecord resume(const std::filesystem::path &folder, const SweepRecord &fresh) {
+SweepRecord load_record(const std::filesystem::path &folder) {
     const std::filesystem::path file = folder / "sweep.json";
     std::ifstream stream(file);
-    if (!stream)
-        return fresh;
-    SweepRecord kept;
     try {
-        kept = nlohmann::json::parse(stream).get<SweepRecord>();
+        return nlohmann::json::parse(stream).get<SweepRecord>();
     } catch (const nlohmann::json::exception &error) {
         throw Error(fmt::format("{}: is no sweep that could be continued ({}); give another folder with -o", file.string(), error.what()));
     }
+}
+
+SweepRecord resume(const std::filesystem::path &folder, const SweepRecord &fresh) {
+    const std::filesystem::path file = folder / "sweep.json";
+    if (!std::filesystem::exists(file))
+        return fresh;
+    SweepRecord kept = load_record(folder);
     const nlohmann::json was = kept, is = fresh;
-    for (const char *key : {"version", "scene_hash", "integrator", "device", "driver", "lanes", "width", "height", "reference_file"})
+    for (const char *key : {"version", "scene_hash", "integrator", "devices", "width", "height", "reference_file"})
         if (was[key] != is[key])
             throw Error(fmt::format("{}: holds another sweep ({} was {}, is {}); give another folder with -o", file.string(), key,
                                     was[key].dump(), is[key].dump()));

@@ -13,6 +13,7 @@ struct Replicate {
     double seconds = 0;          // of kernel time
     double mse = 0, rel_mse = 0; // against the reference, its variance subtracted; may then come out below 0
     double mean_luminance = 0;
+    unsigned long long invalid = 0; // samples, NaN or infinite, left out
 };
 
 struct Point {
@@ -26,8 +27,15 @@ struct Shot { // the picture at equal time
     std::string file; // without ending: FILE.exr, FILE.png, FILE_error.png lie in the folder
 };
 
+struct DeviceRecord {
+    int index = 0; // of `opal devices`
+    std::string name, driver;
+};
+
 struct StrategyRecord {
     std::string name, label;
+    size_t device = 0; // place in the record's list
+    int lanes = 0;
     bool independent = true; // samples: MSE falls as 1/spp
     double compile_seconds = 0;
     double pilot_cost = 0, pilot_seconds_a_sample = 0; // variance of a pixel's sample, times its seconds, averaged
@@ -45,8 +53,9 @@ struct ReferenceRecord {
 
 struct SweepRecord {
     // What may not change between runs into one folder.
-    std::string version, scene, scene_hash, device, driver, reference_file;
-    int width = 0, height = 0, lanes = 0;
+    std::string version, scene, scene_hash, reference_file;
+    std::vector<DeviceRecord> devices;
+    int width = 0, height = 0;
     // What may.
     std::string command, integrator;
     unsigned replicates = 0;
@@ -58,6 +67,7 @@ struct SweepRecord {
     StrategyRecord &strategy(const std::string &name, const std::string &label); // added where it is not there
 };
 
+SweepRecord load_record(const std::filesystem::path &folder);
 // The record in the folder, or `fresh` where there is none. Error naming what differs where the folder holds another sweep.
 SweepRecord resume(const std::filesystem::path &folder, const SweepRecord &fresh);
 void save(const SweepRecord &record, const std::filesystem::path &folder); // sweep.json, written safely

@@ -21,14 +21,18 @@ public:
     Sweep(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates, SweepRecord &record)
         : plan_(plan), device_(device), candidates_(candidates), record_(record) {}
 
-    void run() {
+    void measure() {
         pilots();
         best_ = &*std::min_element(candidates_.begin(), candidates_.end(),
                                    [&](const Candidate &a, const Candidate &b) { return of(a).pilot_cost < of(b).pilot_cost; });
         fit_budget();
         make_reference();
-        for (const Candidate &c : candidates_)
-            points(c);
+        for (unsigned round = 1; round <= record_.replicates; round++)
+            replicate(round);
+    }
+
+    void pictures() {
+        read_reference();
         for (const Candidate &c : candidates_)
             picture(c);
     }
@@ -36,12 +40,13 @@ public:
 private:
     StrategyRecord &of(const Candidate &c) { return record_.strategy(c.name, c.label); }
     void keep() { save(record_, plan_.folder); }
-    Measured compiled(const Candidate &c) { return Measured(device_, c, *plan_.sources, record_.lanes); }
+    Measured compiled(const Candidate &c) { return Measured(device_, c, *plan_.sources); }
+    double budget() const { return record_.budget / double(record_.devices.size()); }
 
     void pilots() {
         if (std::all_of(candidates_.begin(), candidates_.end(), [&](const Candidate &c) { return of(c).pilot_cost > 0; }))
             return;
-        const double share = record_.budget > 0 ? pilots_share * record_.budget / double(candidates_.size()) : pilot_seconds;
+        const double share = record_.budget > 0 ? pilots_share * budget() / double(candidates_.size()) : pilot_seconds;
         std::vector<Pilot> all;
         for (const Candidate &c : candidates_) {
             StrategyRecord &s = of(c);
@@ -49,6 +54,7 @@ private:
             all.push_back(run_pilot(measured, plan_.seed, std::fmin(pilot_seconds, share)));
             s.independent = c.scene.strategy[AXIS_sampler] == CHOICE_sampler_independent;
             s.compile_seconds = measured.compile_seconds();
+            s.lanes = measured.lanes();
             s.pilot_seconds_a_sample = all.back().seconds_a_sample;
         }
         const std::vector<double> costs = pilot_costs(all);
@@ -87,7 +93,7 @@ private:
     // Leaves out the largest spp until the rest fits.
     void fit_budget() {
         double seconds = seconds_left();
-        for (; record_.budget > 0 && seconds > record_.budget; seconds = seconds_left()) {
+        for (; record_.budget > 0 && seconds > budget(); seconds = seconds_left()) {
             if (record_.spp.size() == 1)
                 throw Error(fmt::format("--budget {:g}s: {} samples per pixel alone take about {:.3g} s; give more, or fewer strategies, "
                                         "--replicates or --spp", record_.budget, record_.spp[0], seconds));
@@ -100,25 +106,30 @@ private:
                          fmt::join(record_.spp, ", "), record_.replicates, seconds));
     }
 
+    std::filesystem::path reference_file() const { return plan_.folder / "reference.exr"; }
+
+    void read_reference() { reference_ = plan_.reference ? *plan_.reference : read_exr(reference_file()); }
+
     void make_reference() {
-        const std::filesystem::path file = plan_.folder / "reference.exr";
         ReferenceRecord &r = record_.reference;
         if (plan_.reference) {
-            reference_ = *plan_.reference;
+            read_reference();
             r = {record_.reference_file, 0, 0, mean_luminance(reference_), 0, reference_.find("variance.R") != nullptr};
-        } else if (!r.made_by.empty() && std::filesystem::exists(file)) {
-            reference_ = read_exr(file);
+        } else if (!r.made_by.empty() && std::filesystem::exists(reference_file())) {
+            read_reference();
             if (r.spp < 2 * record_.spp.back())
                 warn(fmt::format("the reference of the sweep that is continued has {} samples per pixel only", r.spp));
         } else {
             Candidate candidate = *best_;
             candidate.scene.strategy[AXIS_sampler] = CHOICE_sampler_independent;
+            if (candidate.scene.strategy.math == MathMode::fast) // is measured against the reference
+                candidate.scene.strategy.math = MathMode::precise;
             Measured measured = compiled(candidate);
             const unsigned half = (reference_spp() + 1) / 2;
             const auto a = measured.render(half, plan_.seed, reference_first_a), b = measured.render(half, plan_.seed, reference_first_b);
             const FilmStatistics sa = statistics_of(a.film), sb = statistics_of(b.film);
             reference_ = reference_of(a.image, b.image);
-            write_exr(reference_, file);
+            write_exr(reference_, reference_file());
             r = {best_->name, 2 * half, a.seconds + b.seconds, (sa.mean_luminance + sb.mean_luminance) / 2,
                  std::hypot(sa.stderr_luminance, sb.stderr_luminance) / 2, true};
             info(fmt::format("reference by {}: {} samples per pixel, {:.3g} s", best_->label, r.spp, r.seconds));
@@ -128,35 +139,46 @@ private:
         keep();
     }
 
-    void points(const Candidate &c) {
-        StrategyRecord &s = of(c);
-        std::unique_ptr<Measured> measured; // compiled where something is missing
-        for (unsigned spp : record_.spp) {
-            if (missing(s, spp) == 0)
-                continue;
-            if (!measured)
-                measured = std::make_unique<Measured>(compiled(c));
-            if (!found(s, spp))
-                s.points.push_back({spp, {}});
+    // One replicate of each point, where there are fewer.
+    void replicate(unsigned round) {
+        double seconds = 0;
+        for (size_t i = 0; i < candidates_.size(); i++)
+            for (unsigned spp : record_.spp) {
+                std::vector<Replicate> &replicates = point(of(candidates_[i]), spp).replicates;
+                if (replicates.size() >= round)
+                    continue;
+                const unsigned seed = plan_.seed + round;
+                const Measured::Rendered r = measured(i).render(spp, seed);
+                const ErrorAgainst error = error_against(reference_, r.image);
+                replicates.push_back({seed, r.seconds, error.mse, error.rel_mse, statistics_of(r.film).mean_luminance, r.film.invalid});
+                seconds += r.seconds;
+                keep();
+            }
+        if (seconds > 0)
+            info(fmt::format("round   {} of {}: {:.3g} s of kernel time", round, record_.replicates, seconds));
+    }
+
+    Point &point(StrategyRecord &s, unsigned spp) {
+        if (!found(s, spp)) {
+            s.points.push_back({spp, {}});
             std::sort(s.points.begin(), s.points.end(), [](const Point &a, const Point &b) { return a.spp < b.spp; });
-            for (Point &p : s.points)
-                while (p.spp == spp && p.replicates.size() < record_.replicates) {
-                    const unsigned seed = plan_.seed + 1 + unsigned(p.replicates.size());
-                    const Measured::Rendered r = measured->render(spp, seed);
-                    const ErrorAgainst error = error_against(reference_, r.image);
-                    p.replicates.push_back({seed, r.seconds, error.mse, error.rel_mse, statistics_of(r.film).mean_luminance});
-                    keep();
-                }
-            const Point &done = *found(s, spp);
-            info(fmt::format("point   {}, {} spp: relMSE {:.3g} % in {:.3g} s", s.label, spp, 100 * done.replicates[0].rel_mse, done.replicates[0].seconds));
         }
+        return *std::find_if(s.points.begin(), s.points.end(), [&](const Point &p) { return p.spp == spp; });
+    }
+
+    Measured &measured(size_t candidate) { // compiled where something is missing
+        measured_.resize(candidates_.size());
+        if (!measured_[candidate])
+            measured_[candidate] = std::make_unique<Measured>(compiled(candidates_[candidate]));
+        return *measured_[candidate];
     }
 
     // All get the kernel time that the fastest strategy takes for the most samples.
     double picture_seconds() {
         double seconds = INFINITY;
-        for (const Candidate &c : candidates_)
-            seconds = std::fmin(seconds, of(c).points.back().replicates[0].seconds);
+        for (const StrategyRecord &s : record_.strategies)
+            if (!s.points.empty())
+                seconds = std::fmin(seconds, s.points.back().replicates[0].seconds);
         return seconds;
     }
 
@@ -180,15 +202,18 @@ private:
     const std::vector<Candidate> &candidates_;
     SweepRecord &record_;
     const Candidate *best_ = nullptr;
+    std::vector<std::unique_ptr<Measured>> measured_;
     Image reference_;
 };
 
 } // namespace
 
-void run_sweep(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates, SweepRecord &record) {
-    for (const Candidate &c : candidates) // all rows now: references to them stay good
-        record.strategy(c.name, c.label);
-    Sweep(plan, device, candidates, record).run();
+void measure_points(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates, SweepRecord &record) {
+    Sweep(plan, device, candidates, record).measure();
+}
+
+void take_pictures(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates, SweepRecord &record) {
+    Sweep(plan, device, candidates, record).pictures();
 }
 
 } // namespace opal

@@ -2,12 +2,10 @@
 
 #include "base/error.h"
 #include "base/table.h"
-#include "scene/load.h"
+#include "scene/combinations.h"
 #include "scene/options.h"
 
 #include <fmt/format.h>
-
-#include <algorithm>
 
 namespace opal {
 
@@ -32,41 +30,16 @@ const std::vector<PresetRow> preset_rows = {
     {"lighting=mis,mis=power,rr=throughput", "MIS, power; roulette by throughput", true, false, true},
 };
 
-std::map<std::string, std::string> parse_overrides(const std::string &name) {
-    std::map<std::string, std::string> overrides;
-    for (size_t begin = 0; begin <= name.size();) {
-        const size_t end = std::min(name.find(',', begin), name.size()), equals = name.find('=', begin);
-        if (equals >= end)
-            throw Error(fmt::format("--strategies: '{}' is neither a preset (course, all) nor a list axis=value,...; axes: integrator, {}",
-                                    name, joined(names_of(options()))));
-        if (!overrides.emplace(name.substr(begin, equals - begin), name.substr(equals + 1, end - equals - 1)).second)
-            throw Error(fmt::format("--strategies: '{}' names {} twice", name, name.substr(begin, equals - begin)));
-        begin = end + 1;
-    }
-    return overrides;
-}
-
-bool misses_point_lights(const SceneDescription &scene) {
-    return scene.strategy[AXIS_lighting] == CHOICE_lighting_bsdf && !scene.point_lights.empty();
-}
-
 class List {
 public:
     List(const SceneDescription &scene) : scene_(scene) {}
 
-    void add(const std::string &name, const std::string &label, bool preset) {
+    void add(const std::string &name, const std::string &label) {
         Candidate candidate{name, label, scene_};
-        try {
-            override_strategy(candidate.scene.strategy, parse_overrides(name));
-            if (preset && misses_point_lights(candidate.scene))
-                return;
-            check_strategy(candidate.scene);
-        } catch (const Error &error) {
-            throw Error(fmt::format("strategy '{}': {}", name, error.what()));
-        }
-        const auto same = [&](const Candidate &c) { return c.name == name; };
-        if (std::any_of(all.begin(), all.end(), same))
-            throw Error(fmt::format("strategy '{}' is named twice", name));
+        candidate.scene.strategy = named_strategy(scene_, name).strategy;
+        for (const Candidate &other : all)
+            if (is_same(other.scene.strategy, candidate.scene.strategy))
+                throw Error(fmt::format("strategy '{}' is the same as '{}' on this scene", name, other.name));
         all.push_back(std::move(candidate));
     }
 
@@ -76,10 +49,11 @@ public:
         if (!path && !direct)
             throw Error(fmt::format("the presets course and all compare ways to find light; integrator {} has none: name strategies, "
                                     "e.g. --strategies hemisphere=uniform hemisphere=cosine, or take --integrator path",
-                                    scene_.integrator_type));
+                                    axes()[AXIS_integrator].choices[size_t(integrator)].name));
+        const bool misses_point_lights = !scene_.point_lights.empty();
         for (const PresetRow &row : preset_rows)
-            if ((path ? row.path : row.direct) && (every || !row.only_all))
-                add(row.name, row.label, true);
+            if ((path ? row.path : row.direct) && (every || !row.only_all) && !(misses_point_lights && row.name.starts_with("lighting=bsdf")))
+                add(row.name, row.label);
     }
 
     std::vector<Candidate> all;
@@ -105,15 +79,19 @@ std::vector<Candidate> parse_strategies(const SceneDescription &scene, const std
                                         const std::vector<std::string> &math) {
     List list(scene);
     for (const std::string &word : words.empty() ? std::vector<std::string>{"course"} : words)
-        if (word == "course" || word == "all")
-            list.add_preset(word == "all");
-        else
-            list.add(word, word, false);
+        for (const std::string &part : split(word, ';'))
+            if (part == "course" || part == "all")
+                list.add_preset(part == "all");
+            else if (part.find('=') == std::string::npos)
+                throw Error(fmt::format("--strategies: '{}' is neither a preset (course, all) nor a list axis=value,...; axes: integrator, {}",
+                                        part, joined(names_of(options()))));
+            else
+                list.add(part, part);
     if (!math.empty()) {
         List crossed(scene);
         for (const Candidate &c : list.all)
             for (const std::string &mode : math)
-                crossed.add(c.name + ",math=" + mode, c.label + "; " + mode + " math", true);
+                crossed.add(c.name + ",math=" + mode, c.label + "; " + mode + " math");
         list.all = std::move(crossed.all);
     }
     if (list.all.empty())

@@ -29,7 +29,7 @@ StrategyRecord strategy_of(const std::string &label, double scale, unsigned seed
 SweepRecord record_of() {
     SweepRecord record;
     record.scene = "a<b>.xml";
-    record.device = "a device";
+    record.devices = {{0, "a device", "1.0"}};
     record.reference = {"lighting=mis", 1000, 1, 1, 1e-5, true};
     record.strategies = {strategy_of("slow & steady", 8, 1), strategy_of("quick", 2, 2)};
     return record;
