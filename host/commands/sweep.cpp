@@ -29,7 +29,7 @@ struct Options {
     std::vector<unsigned> spp = {4, 16, 64};
     unsigned replicates = 5, seed = 0, reference_spp = 0, width = 0;
     std::vector<std::string> devices;
-    std::string reference, budget, out;
+    std::string reference, budget, out, clock = "kernel";
     bool quiet = false;
 };
 
@@ -77,6 +77,7 @@ SweepRecord fresh_record(const Options &o, const SceneDescription &scene, const 
     for (const DevicePick &d : devices)
         r.devices.push_back({d.info.index, d.info.name, d.info.driver});
     r.reference_file = o.reference;
+    r.clock = o.clock;
     r.width = scene.camera.width;
     r.height = scene.camera.height;
     r.command = command_line();
@@ -107,6 +108,9 @@ std::vector<DevicePick> pick_devices(const Options &o) {
             if (picks[i].info.index == picks.back().info.index)
                 throw Error(fmt::format("--device: '{}' and '{}' are the same device, {}", o.devices[i], wanted, picks[i].info.name));
     }
+    for (const DevicePick &pick : picks)
+        if (o.clock == "cpu" && pick.info.type != "cpu")
+            throw Error(fmt::format("--clock cpu: {} is no CPU; possible: kernel", pick.info.name));
     return picks;
 }
 
@@ -183,7 +187,7 @@ int run(const Options &o) {
     }
     const std::vector<Candidate> strategies = parse_strategies(scene, o.strategies, o.math);
     const Sources sources = load_sources(o.scene);
-    SweepPlan plan{.folder = {}, .seed = o.seed, .reference_spp = o.reference_spp, .sources = &sources};
+    SweepPlan plan{.folder = {}, .seed = o.seed, .reference_spp = o.reference_spp, .clock = o.clock == "cpu" ? Clock::cpu : Clock::kernel, .sources = &sources};
     Image reference;
     if (!o.reference.empty()) {
         reference = read_reference(o.reference, scene);
@@ -229,6 +233,8 @@ RunCommand setup_sweep(CLI::App &app) {
     app.add_option("--reference", o->reference, "EXR to hold the images against [made by the best strategy]")->type_name("FILE");
     app.add_option("--reference-spp", o->reference_spp, "Samples per pixel of the reference that is made [8 times the largest --spp]");
     app.add_option("--budget", o->budget, "Kernel time for all of it: leaves out the largest --spp until it fits")->type_name("TIME");
+    app.add_option("--clock", o->clock, "kernel: seconds of the device's own profile; cpu: of all cores of a CPU device, over their number: steady "
+                                        "on a machine that others use, too")->check(CLI::IsMember({"kernel", "cpu"}))->capture_default_str();
     app.add_option("--width", o->width, "Pixels; keeps the aspect (default: the scene's)")->check(CLI::Range(1, 65535));
     app.add_option("-o,--output", o->out, "Folder; a sweep that is there already goes on [SCENE_sweep]")->type_name("FOLDER");
     app.add_flag("--quiet", o->quiet, "Print the verdict, warnings and errors only");

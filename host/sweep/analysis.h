@@ -11,7 +11,7 @@ constexpr double sweep_confidence = 0.95;
 struct PointSummary {
     unsigned spp = 0;
     size_t replicates = 0;
-    double seconds = 0; // mean, of kernel time
+    double seconds = 0; // mean
     stats::Interval mse, rel_mse;
 };
 

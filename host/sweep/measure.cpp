@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 
 namespace opal {
 
-Measured::Measured(const Device &device, const Candidate &candidate, const Sources &sources)
-    : device_(device), candidate_(candidate), sources_(sources) {
+Measured::Measured(const Device &device, const Candidate &candidate, const Sources &sources, Clock clock)
+    : device_(device), candidate_(candidate), sources_(sources), clock_(clock) {
     compile(candidate.scene.spp);
 }
 
@@ -32,9 +33,11 @@ Measured::Rendered Measured::render(unsigned spp, unsigned seed, unsigned first)
     if (candidate_.scene.strategy[AXIS_sampler] == CHOICE_sampler_stratified && spp != compiled_spp_)
         compile(spp);
     renderer_->restart(seed, first);
+    const std::clock_t before = std::clock();
     if (!renderer_->render(first + spp, [](double, double) { return !interrupted(); }))
         throw Interrupted{};
-    Rendered rendered{renderer_->film(), {}, renderer_->kernel_seconds()};
+    const double cpu_seconds = double(std::clock() - before) / CLOCKS_PER_SEC / std::max(1u, device_.info.compute_units);
+    Rendered rendered{renderer_->film(), {}, clock_ == Clock::cpu ? cpu_seconds : renderer_->kernel_seconds()};
     rendered.image = image_of(rendered.film, false);
     return rendered;
 }

@@ -9,15 +9,19 @@
 
 namespace opal {
 
+// What a second is. kernel: of the device's own profile. cpu: of this process on all cores, divided by the device's compute units:
+// what the kernels would take on a machine of their own, steady where others work, too; of a CPU device.
+enum class Clock { kernel, cpu };
+
 // One strategy, compiled for a device.
 class Measured {
 public:
-    Measured(const Device &device, const Candidate &candidate, const Sources &sources);
+    Measured(const Device &device, const Candidate &candidate, const Sources &sources, Clock clock = Clock::kernel);
 
     struct Rendered {
         Film film;
         Image image;
-        double seconds = 0; // of kernel time
+        double seconds = 0;
     };
     // Samples [first, first + spp) of `seed`. Throws Interrupted.
     Rendered render(unsigned spp, unsigned seed, unsigned first = 0);
@@ -30,6 +34,7 @@ private:
     const Device &device_;
     const Candidate &candidate_;
     const Sources &sources_;
+    Clock clock_;
     unsigned compiled_spp_ = 0; // of stratified samples: their strata belong to one number of samples
     std::unique_ptr<FlatScene> flat_;
     std::unique_ptr<Renderer> renderer_;

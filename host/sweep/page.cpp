@@ -123,11 +123,13 @@ std::string devices_of(const SweepRecord &r) {
 
 std::string how_measured(const SweepRecord &r) {
     const ReferenceRecord &ref = r.reference;
-    std::string html = fmt::format("<p>{}, {} &times; {} pixels, on {}, by opal {}. Seconds are the device's own kernel times; compiling is not among them. "
+    std::string html = fmt::format("<p>{}, {} &times; {} pixels, on {}, by opal {}. Seconds are {}; compiling is not among them. "
                                    "Each point is the mean of {} renders with seeds of their own, made in rounds: one of every strategy, then the next, "
                                    "so that what disturbed the machine disturbed all. An interval holds the true value with 95 % confidence: "
                                    "Student's t, on the logarithm for errors, times and their ratios, by rounds for ratios.</p>\n",
-                                   html_text(r.scene), r.width, r.height, html_text(devices_of(r)), r.version, r.replicates);
+                                   html_text(r.scene), r.width, r.height, html_text(devices_of(r)), r.version,
+                                   r.clock == "cpu" ? "CPU seconds of all cores over their number, what the kernels take on a machine of their own"
+                                                    : "the device's own kernel times", r.replicates);
     html += "<p><b>relMSE</b> is the mean over pixels and channels of (image &minus; reference)&sup2; / (reference&sup2; + (1 % of the reference's mean)&sup2;): "
             "1 % is an image whose typical error is a tenth of each pixel's value. It asks the same of dark and bright pixels, where <b>MSE</b>, on which the "
             "column of efficiencies rests, is decided by the brightest: the two may rank differently. ";
@@ -199,7 +201,7 @@ std::string html_page(const SweepRecord &record, const SweepSummary &summary, co
     html += list_of(verdict(record, summary));
     html += "<h2>Error against time</h2>\n<p>Both axes are logarithmic; bars are 95 % intervals. Lower left is better. Point at a mark for its figures.</p>\n";
     html += convergence_plot(summary);
-    html += "<h2>Time to an error</h2>\n<p>Kernel seconds, extrapolated where no render took as long. Small print: 95 % intervals.</p>\n" + table(summary);
+    html += "<h2>Time to an error</h2>\n<p>Seconds, extrapolated where no render took as long. Small print: 95 % intervals.</p>\n" + table(summary);
     html += "<h2>What each gives in the same time</h2>\n<p>Under each image its error, |image &minus; reference| / reference: dark blue is none, yellow is as "
             "large as the pixel itself. Point at one to see the same place of all four times as large; click to enlarge.</p>\n";
     html += pictures(summary, folder);

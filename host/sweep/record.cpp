@@ -17,7 +17,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Shot, spp, seconds, rel_mse, file)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceRecord, index, name, driver)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StrategyRecord, name, label, device, lanes, independent, compile_seconds, pilot_cost, pilot_seconds_a_sample, points, shot)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReferenceRecord, made_by, spp, seconds, mean_luminance, stderr_luminance, variance_known)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SweepRecord, version, scene, scene_hash, reference_file, devices, width, height, command,
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SweepRecord, version, scene, scene_hash, reference_file, clock, devices, width, height, command,
                                    integrator, replicates, spp, left_out_spp, budget, reference, strategies)
 
 StrategyRecord &SweepRecord::strategy(const std::string &name, const std::string &label) {
@@ -46,7 +46,7 @@ SweepRecord resume(const std::filesystem::path &folder, const SweepRecord &fresh
         return fresh;
     SweepRecord kept = load_record(folder);
     const nlohmann::json was = kept, is = fresh;
-    for (const char *key : {"version", "scene_hash", "integrator", "devices", "width", "height", "reference_file"})
+    for (const char *key : {"version", "scene_hash", "integrator", "devices", "clock", "width", "height", "reference_file"})
         if (was[key] != is[key])
             throw Error(fmt::format("{}: holds another sweep ({} was {}, is {}); give another folder with -o", file.string(), key,
                                     was[key].dump(), is[key].dump()));

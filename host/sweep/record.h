@@ -10,7 +10,7 @@ namespace opal {
 // One render of one strategy with one seed.
 struct Replicate {
     unsigned seed = 0;
-    double seconds = 0;          // of kernel time
+    double seconds = 0;          // by the record's clock
     double mse = 0, rel_mse = 0; // against the reference, its variance subtracted; may then come out below 0
     double mean_luminance = 0;
     unsigned long long invalid = 0; // samples, NaN or infinite, left out
@@ -53,7 +53,7 @@ struct ReferenceRecord {
 
 struct SweepRecord {
     // What may not change between runs into one folder.
-    std::string version, scene, scene_hash, reference_file;
+    std::string version, scene, scene_hash, reference_file, clock; // kernel or cpu
     std::vector<DeviceRecord> devices;
     int width = 0, height = 0;
     // What may.

@@ -40,7 +40,7 @@ public:
 private:
     StrategyRecord &of(const Candidate &c) { return record_.strategy(c.name, c.label); }
     void keep() { save(record_, plan_.folder); }
-    Measured compiled(const Candidate &c) { return Measured(device_, c, *plan_.sources); }
+    Measured compiled(const Candidate &c) { return Measured(device_, c, *plan_.sources, plan_.clock); }
     double budget() const { return record_.budget / double(record_.devices.size()); }
 
     void pilots() {
@@ -102,7 +102,7 @@ private:
         }
         if (!record_.left_out_spp.empty())
             warn(fmt::format("--budget {:g}s: leaves out {} samples per pixel", record_.budget, fmt::join(record_.left_out_spp, ", ")));
-        info(fmt::format("plan    {} strategies, {} samples per pixel, {} replicates: about {:.3g} s of kernel time", candidates_.size(),
+        info(fmt::format("plan    {} strategies, {} samples per pixel, {} replicates: about {:.3g} s", candidates_.size(),
                          fmt::join(record_.spp, ", "), record_.replicates, seconds));
     }
 
@@ -155,7 +155,7 @@ private:
                 keep();
             }
         if (seconds > 0)
-            info(fmt::format("round   {} of {}: {:.3g} s of kernel time", round, record_.replicates, seconds));
+            info(fmt::format("round   {} of {}: {:.3g} s", round, record_.replicates, seconds));
     }
 
     Point &point(StrategyRecord &s, unsigned spp) {

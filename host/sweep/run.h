@@ -9,6 +9,7 @@ struct SweepPlan {
     std::filesystem::path folder;
     unsigned seed = 0;
     unsigned reference_spp = 0; // 0: 8 times the largest spp
+    Clock clock = Clock::kernel;
     const Sources *sources = &Sources::embedded();
     const Image *reference = nullptr; // --reference; nullptr: made by the best strategy
 };

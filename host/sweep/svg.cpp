@@ -46,7 +46,7 @@ std::string grid(const LogAxis &x, const LogAxis &y) {
                                       : text(left - 8, place + 4, "text-anchor='end'", fmt::format("{:g} %", 100 * value));
             }
     }
-    svg += text((left + width - right) / 2, height - 14, "text-anchor='middle'", "kernel time, seconds (fewer is better)");
+    svg += text((left + width - right) / 2, height - 14, "text-anchor='middle'", "time, seconds (fewer is better)");
     return svg + text(0, 0, fmt::format("text-anchor='middle' transform='translate(18 {}) rotate(-90)'", (top + height - bottom) / 2),
                       "relative mean squared error (less is better)");
 }
@@ -96,7 +96,7 @@ std::string convergence_plot(const SweepSummary &summary) {
     if (!(x1 > 0 && y1 > 0))
         return "<p>Nothing to plot: no error could be told from the reference's own.</p>\n";
     const LogAxis x = axis_of(x0, x1, left, width - right), y = axis_of(y0, y1, height - bottom, top);
-    std::string svg = fmt::format("<svg viewBox='0 0 {} {}' role='img' aria-label='relative mean squared error against kernel time'>\n", width, height);
+    std::string svg = fmt::format("<svg viewBox='0 0 {} {}' role='img' aria-label='relative mean squared error against time'>\n", width, height);
     svg += grid(x, y);
     double legend = top + 14;
     for (size_t i = 0; i < summary.strategies.size(); i++, legend += 22) {

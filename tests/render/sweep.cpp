@@ -85,7 +85,7 @@ TEST_CASE("The slope of every independent unbiased strategy is -1 within its int
     const std::string integrator = GENERATE("path_mis", "direct_lighting");
     CAPTURE(integrator);
     const Place place;
-    const Outcome outcome = place.sweep("--integrator " + integrator + " --spp 64,256,1024 --replicates 8 --reference-spp 65536 -o out");
+    const Outcome outcome = place.sweep("--integrator " + integrator + " --spp 32,128,512 --replicates 8 --reference-spp 32768 -o out");
     INFO(outcome.err);
     REQUIRE(outcome.exit_code == 0);
     const nlohmann::json record = place.record();
