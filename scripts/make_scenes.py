@@ -9,7 +9,7 @@ import argparse
 import pathlib
 import sys
 
-from scenekit import cornell_box, displaced_sphere, lights, materials, write
+from scenekit import cornell_box, displaced_sphere, eta_study, lights, materials, write
 
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 
@@ -17,7 +17,7 @@ SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 def all_files():
     """{path: text} of everything that is kept in the repository."""
     files = {}
-    for module in (cornell_box, lights, materials):
+    for module in (cornell_box, lights, materials, eta_study):
         for name, (surface, comment) in module.meshes().items():
             files[SCENES / "meshes" / f"{name}.obj"] = write.obj_text(surface, comment)
         for scene in module.scenes():
@@ -48,8 +48,8 @@ def main():
         if differing:
             sys.exit("differs from what scripts/make_scenes.py writes: " + ", ".join(differing))
         return None
-    (SCENES / "meshes").mkdir(parents=True, exist_ok=True)
     for path, text in files.items():
+        path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
     print(f"{len(files)} files, {sum(map(len, files.values())) / 1e3:.0f} kB in {SCENES}")
 

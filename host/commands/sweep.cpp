@@ -131,6 +131,7 @@ std::vector<Candidate> cross(const std::vector<Candidate> &strategies, const std
 
 void write_results(const SweepRecord &record, const std::filesystem::path &folder) {
     const SweepSummary summary = summarise(record);
+    save(record, folder, json_of(summary));
     write_safely(folder / "sweep.csv", csv(summary));
     write_safely(folder / "index.html", html_page(record, summary, folder));
     for (const std::string &sentence : verdict(record, summary))

@@ -4,6 +4,8 @@
 #include "stats/intervals.h"
 #include "sweep/record.h"
 
+#include <nlohmann/json_fwd.hpp>
+
 namespace opal {
 
 constexpr double sweep_confidence = 0.95;
@@ -33,5 +35,6 @@ struct SweepSummary {
 
 SweepSummary summarise(const SweepRecord &record);
 std::string csv(const SweepSummary &summary); // one line a point
+nlohmann::json json_of(const SweepSummary &summary); // an interval is [estimate, low, high], null where infinite or unknown
 
 } // namespace opal

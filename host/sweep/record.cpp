@@ -58,8 +58,11 @@ SweepRecord resume(const std::filesystem::path &folder, const SweepRecord &fresh
     return kept;
 }
 
-void save(const SweepRecord &record, const std::filesystem::path &folder) {
-    write_safely(folder / "sweep.json", nlohmann::json(record).dump(1) + "\n");
+void save(const SweepRecord &record, const std::filesystem::path &folder, const nlohmann::json &summary) {
+    nlohmann::json j = record;
+    if (!summary.is_null())
+        j["summary"] = summary;
+    write_safely(folder / "sweep.json", j.dump(1) + "\n");
 }
 
 } // namespace opal

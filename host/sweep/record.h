@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 namespace opal {
 
 // One render of one strategy with one seed.
@@ -70,6 +72,7 @@ struct SweepRecord {
 SweepRecord load_record(const std::filesystem::path &folder);
 // The record in the folder, or `fresh` where there is none. Error naming what differs where the folder holds another sweep.
 SweepRecord resume(const std::filesystem::path &folder, const SweepRecord &fresh);
-void save(const SweepRecord &record, const std::filesystem::path &folder); // sweep.json, written safely
+// sweep.json, written safely; with the summary of a finished sweep, which a later run does not read.
+void save(const SweepRecord &record, const std::filesystem::path &folder, const nlohmann::json &summary = {});
 
 } // namespace opal

@@ -87,7 +87,8 @@ class Scene:
 
     def mesh(self, obj, material, *transform, radiance=None):
         """An OBJ of scenes/meshes, moved by the transforms in their order."""
-        self._add('<mesh type="obj">', [f'<string name="filename" value="meshes/{obj}.obj"/>'], material, transform, radiance)
+        up = "../" * self.name.count("/")
+        self._add('<mesh type="obj">', [f'<string name="filename" value="{up}meshes/{obj}.obj"/>'], material, transform, radiance)
 
     def parallelogram(self, origin, u, v, material, radiance=None):
         """Front and emitting side is u x v."""
