@@ -73,6 +73,9 @@ static v3 sampled_light(const Scene *scene, const Path *path, Surface s, mask li
     return v3_pick(live & !any_hit(scene, shadow, live), light_in, none);
 }
 
+// The least normal float. Below it a path carries nothing, nor may it go on: the least denormal times 0.9 is itself again, for ever.
+#define THROUGHPUT_LEAST R(1.1754944e-38)
+
 // The path's next segment, drawn by the BSDF. Returns the lanes whose path carries anything on.
 static mask scatter(const Scene *scene, Path *path, Surface s, mask live) {
     v2 lobe = path_draw(scene, path, DIM_LOBE);
@@ -93,7 +96,7 @@ static mask scatter(const Scene *scene, Path *path, Surface s, mask live) {
     path->direct = sample.discrete;
     if (CHOSEN(scene, lighting, mis)) path->pdf = bsdf_pdf(scene, s.bsdf, s.wi, sample.wo, live);
     path->depth = path->depth + 1u;
-    return live & (v3_largest(path->throughput) > 0);
+    return live & (v3_largest(path->throughput) >= THROUGHPUT_LEAST);
 }
 
 // Survival stays below 1: total reflection can hold a path in glass for ever. No lower, so that a furnace of albedo a keeps

@@ -102,6 +102,7 @@ static uints permute(uints i, uint n, uints p) {
 
 // One jittered stratum of a grid of at least `spp` cells a sample, in an order of its own for each dimension.
 static v2 stratified_pair(Sampler s, uints dimension, uint spp, uint seed) {
+    spp = min(spp, 1u << 30); // or the number of cells overflows
     uint columns = max(1u, (uint)sqrt((float)spp)), rows = (spp + columns - 1) / columns, cells = columns * rows;
     uints round = s.sample / cells; // past spp the strata start over
     u3 h = pcg3d(s.pixel, dimension, (uints)(seed) ^ (round * 0x85ebca6bu));

@@ -62,10 +62,15 @@ static Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask found) {
     real inverse_length = rsqrt(v3_dot(n, n));
 
     Surface s;
-    s.p = v3_mad(e1, hit.u, v3_mad(e2, hit.v, p0)); // from the triangle, not along the ray: far closer to the plane
     s.normal = v3_scale(n, inverse_length);
     s.area = R(0.5) / inverse_length;
     s.margin = surface_margin(p0, p1, p2);
+    // From the triangle, not along the ray: far closer to the plane. And two margins away from its sides, as far as it is wide: a ray that
+    // starts at an edge of a closed room could start outside of it. The longest side is at most sqrt(2 (e1^2 + e2^2)).
+    real least = real_min(s.margin * sqrt(8 * (v3_dot(e1, e1) + v3_dot(e2, e2))) * inverse_length, (real)(R(0.3333)));
+    real u = real_min(real_max(hit.u, least), 1 - 2 * least);
+    real v = real_min(real_max(hit.v, least), 1 - least - u);
+    s.p = v3_mad(e1, u, v3_mad(e2, v, p0));
     uints triangle = triangle_id(scene, slot);
     s.frame = frame_of(shading_normal(scene, triangle, hit.u, hit.v, s.normal));
     s.wi = to_local(s.frame, v3_scale(v3_neg(ray.d), rsqrt(v3_dot(ray.d, ray.d))));

@@ -1,7 +1,9 @@
+#include "base/log.h"
 #include "commands/commands.h"
 #include "commands/options.h"
 #include "device/buffers.h"
 #include "flatten/flat_scene.h"
+#include "scene/sanity.h"
 
 #include <fmt/format.h>
 
@@ -145,6 +147,8 @@ int run_inspect(const InspectOptions &options) {
     print_strategy(scene, lanes);
     print_buffers(flat);
     print_features(flat.features);
+    for (const std::string &line : sanity_warnings(scene))
+        warn(line);
     return 0;
 }
 

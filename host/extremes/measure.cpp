@@ -13,18 +13,22 @@ namespace {
 
 // Correct: energy within this of double precision, or within three standard errors of the difference, which may not itself exceed the
 // noise of the picture; no sample NaN or infinite; leaks and self-shadows no more than a ray in a million.
-constexpr double tolerance = 1e-4, sigmas = 3, rays_astray = 1e-6;
+constexpr double sigmas = 3, rays_astray = 1e-6;
 
-Film render(SceneDescription scene, const Device &device, const How &how, MathMode math, unsigned side, unsigned spp) {
-    scene.camera.width = scene.camera.height = int(side);
+Film render(const Row &row, SceneDescription scene, double value, const Device &device, const How &how, MathMode math) {
+    const unsigned side = row.value_is == Value::spp ? 1 : row.side.value_or(how.side);
+    const unsigned spp = row.value_is == Value::spp ? unsigned(value) : row.spp.value_or(how.spp);
+    const unsigned first = row.value_is == Value::first_sample ? unsigned(value) : 0;
+    if (row.value_is != Value::height)
+        scene.camera.width = scene.camera.height = int(side);
     scene.spp = spp;
     RenderOptions options;
     options.build.math = math;
     options.build.lanes = lanes_for(device.info, 0, math);
     options.sources = how.sources;
     Renderer renderer(device, flatten(scene, options.build.lanes), options);
-    renderer.restart(how.seed);
-    renderer.render(spp);
+    renderer.restart(how.seed, first);
+    renderer.render(first + spp);
     return renderer.film();
 }
 
@@ -49,11 +53,11 @@ std::string fault_of(const Row &row, const Point &p) {
     std::vector<std::string> faults;
     if (p.invalid_single)
         faults.push_back(fmt::format("{} samples NaN or infinite{}", p.invalid_single, p.invalid_oracle ? " (in double too)" : ""));
-    if (!(p.error <= std::max(tolerance, sigmas * p.paired_noise)))
+    if (!(p.error <= std::max(row.tolerance, sigmas * p.paired_noise)))
         faults.push_back(fmt::format("energy off by {:.2g}", p.error));
-    if (!(p.paired_noise <= std::max(tolerance, 2 * p.noise)))
+    if (!(p.paired_noise <= std::max(row.tolerance, 2 * p.noise)))
         faults.push_back(fmt::format("pixels off by {:.2g}", p.paired_noise));
-    if (row.truth && p.single_truth && !(*p.single_truth <= std::max(1e-3, sigmas * p.noise)))
+    if (p.single_truth && !(*p.single_truth <= std::max(1e-3, sigmas * std::sqrt(2.0) * p.noise))) // the truth may be a picture with noise, too
         faults.push_back(fmt::format("off the truth by {:.2g}", *p.single_truth));
     if (p.leaks.value_or(0) > rays_astray)
         faults.push_back(fmt::format("{:.2g} of the rays leak", *p.leaks));
@@ -62,10 +66,24 @@ std::string fault_of(const Row &row, const Point &p) {
     return fmt::format("{}", fmt::join(faults, ", "));
 }
 
+Point measure_probe(const Row &row, double value, const Device &device, const How &how) {
+    const Probed probed = row.probe(value, device, how);
+    Point p{};
+    p.value = value;
+    p.single = probed.single;
+    p.oracle = probed.oracle;
+    p.error = probed.error;
+    p.leaks = probed.leaks;
+    p.invalid_single = probed.invalid_single;
+    p.invalid_oracle = probed.invalid_oracle;
+    p.fault = fault_of(row, p);
+    return p;
+}
+
 Point measure(const Row &row, double value, const Device &device, const How &how, std::optional<double> truth) {
-    const unsigned side = row.value_is_spp ? 1 : unsigned(row.side.value_or(int(how.side)));
-    const unsigned spp = row.value_is_spp ? unsigned(value) : unsigned(row.spp.value_or(int(how.spp)));
-    const auto film = [&](const SceneDescription &scene, MathMode math) { return render(scene, device, how, math, side, spp); };
+    if (row.probe)
+        return measure_probe(row, value, device, how);
+    const auto film = [&](const SceneDescription &scene, MathMode math) { return render(row, scene, value, device, how, math); };
     const Film single = film(row.picture(value), MathMode::precise), oracle = film(row.picture(value), MathMode::double_precision);
     const FilmStatistics s = statistics_of(single), o = statistics_of(oracle);
     Point p{};
@@ -114,7 +132,7 @@ Sweep sweep(const Row &row, const Device &device, const How &how, size_t stride)
     Sweep s{&row, {}, 0, 0, true};
     std::optional<double> invariant;
     if (row.invariant)
-        invariant = statistics_of(render(row.picture(row.start), device, how, MathMode::double_precision, how.side, how.spp)).mean_luminance;
+        invariant = statistics_of(render(row, row.picture(row.start), row.start, device, how, MathMode::double_precision)).mean_luminance;
     for (size_t i = 0; i < row.values.size(); i++) {
         const double value = row.values[i];
         if (i % stride && i + 1 < row.values.size() && value != row.start && value != row.promised_from && value != row.promised_to)

@@ -7,11 +7,6 @@
 
 namespace opal::extremes {
 
-struct How {
-    unsigned side = 64, spp = 256, seed = 1; // pixels a side
-    const Sources *sources = &Sources::embedded();
-};
-
 struct Point {
     double value;                    // of the row's parameter
     double single, oracle;           // mean luminance of the two pictures

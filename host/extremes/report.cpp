@@ -70,7 +70,7 @@ std::string table_of(const Sweep &s) {
     std::string text = fmt::format("\n{}: {}\n  {:>10} {:>12} {:>12} {:>9} {:>9} {:>9} {:>9} {:>9} {:>8} {:>8}\n", s.row->name, s.row->stretched, "value",
                                    "single", "double", "error", "paired", "noise", "leaks", "shadows", "invalid", "of truth");
     for (const Point &p : s.points)
-        text += fmt::format("  {:>10.4g} {:>12.6g} {:>12.6g} {:>9.1e} {:>9.1e} {:>9.1e} {:>9} {:>9} {:>8} {:>8}{}{}\n", p.value, p.single, p.oracle, p.error,
+        text += fmt::format("  {:>10.8g} {:>12.6g} {:>12.6g} {:>9.1e} {:>9.1e} {:>9.1e} {:>9} {:>9} {:>8} {:>8}{}{}\n", p.value, p.single, p.oracle, p.error,
                             p.paired_noise, p.noise, share(p.leaks), share(p.shadows), p.invalid_single, share(p.single_truth),
                             p.fault.empty() ? "" : "  ", p.fault);
     return text + fmt::format("  {}{}\n", breaking_point(s), s.kept ? "" : "  PROMISE BROKEN");

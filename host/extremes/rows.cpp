@@ -54,6 +54,8 @@ SceneDescription light_edge_on(double degrees) { // between its plane and the mi
     const double a = degrees * (3.14159265358979323846 / 180), s = std::sin(a), c = std::cos(a);
     return floor_under(light(Parallelogram{{-1.2, 0.5, -0.3}, {0.6 * c, 0.6 * s, 0}, {0, 0, 0.6}}, 1 / s), diffuse(0.5));
 }
+// A light that stands on the floor, or above a gap.
+SceneDescription light_standing(double gap) { return floor_under(light(quad({-0.3, gap, 0.5}, {0, 0.5, 0}, {0.6, 0, 0}), 1), diffuse(0.5)); }
 SceneDescription light_of_radiance(double radiance) { return floor_under(lamp_over({0, 1, 0}, 0.5, radiance), diffuse(0.5)); }
 
 SceneDescription rough_floor(double alpha) { return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4), microfacet(alpha)); }
@@ -70,18 +72,20 @@ SceneDescription glass_cube(double ior) {
 }
 
 // Paths are not cut short by chance, so that each sample is the sum of the series itself.
-SceneDescription furnace(double darkness) { // 1 - albedo
-    SceneDescription scene = path_traced({made_of(cube({}, 1, true), diffuse(1 - darkness))}, camera({0.1, 0.2, -0.3}, {0.3, 0, 1}, 70),
-                                         unsigned(std::min(1e6, 20 / darkness)));
+SceneDescription furnace(double darkness, unsigned max_depth) { // 1 - albedo
+    SceneDescription scene = path_traced({made_of(cube({}, 1, true), diffuse(1 - darkness))}, camera({0.1, 0.2, -0.3}, {0.3, 0, 1}, 70), max_depth);
     scene.meshes[0].radiance = Color{1, 1, 1};
     scene.strategy[AXIS_lighting] = CHOICE_lighting_bsdf;
     scene.strategy[AXIS_rr] = CHOICE_rr_off;
     return scene;
 }
-double furnace_truth(double darkness) { // of the albedo in single precision, which is what the scene holds
-    const double albedo = float(1 - darkness), depth = double(furnace(darkness).strategy.max_depth);
-    return albedo < 1 ? -std::expm1(depth * std::log(albedo)) / (1 - albedo) : depth;
+double furnace_truth(double darkness, unsigned max_depth) { // of the albedo in single precision, which is what the scene holds
+    const double albedo = float(1 - darkness);
+    return albedo < 1 ? -std::expm1(max_depth * std::log(albedo)) / (1 - albedo) : max_depth;
 }
+unsigned all_bounces(double darkness) { return darkness < 1e-4 ? 20000 : unsigned(20 / darkness); }
+SceneDescription bright_furnace(double darkness) { return furnace(darkness, all_bounces(darkness)); }
+SceneDescription deep_furnace(double depth) { return furnace(0.1, unsigned(depth)); }
 
 SceneDescription seen_through(double degrees) {
     SceneDescription scene = room();
@@ -94,32 +98,44 @@ SceneDescription clipped_near(double distance) {
     return scene;
 }
 
-// Each wall of a closed cube is cut into a strip 1 / aspect wide and the rest.
-TriangleMesh slivered_cube(double aspect) {
-    TriangleMesh cut;
-    const TriangleMesh whole = cube({}, 1, true);
-    cut.positions = whole.positions;
-    for (const auto &t : whole.triangles) { // across the side opposite to its first corner
-        const unsigned a = t[0].position, b = t[1].position, c = t[2].position, d = unsigned(cut.positions.size());
-        cut.positions.push_back(cut.positions[b] + (cut.positions[c] - cut.positions[b]) * (1 / aspect));
-        for (const auto &[x, y, z] : {std::array{a, b, d}, std::array{a, d, c}})
-            cut.triangles.push_back({{{x, OPAL_NONE}, {y, OPAL_NONE}, {z, OPAL_NONE}}});
-    }
-    return cut;
-}
-SceneDescription slivered_room(double aspect) {
+// The room with other walls than its first mesh, a cube.
+SceneDescription room_of(TriangleMesh walls) {
     SceneDescription scene = room();
     const TriangleMesh old = std::get<TriangleMesh>(scene.meshes[0].shape); // its corners say how the room is turned
-    TriangleMesh walls = slivered_cube(aspect);
     const Vec3 o = old.positions[0], x = (old.positions[1] - o) * 0.5, y = (old.positions[2] - o) * 0.5, z = (old.positions[4] - o) * 0.5;
     for (Vec3 &p : walls.positions)
         p = o + x * (p.x + 1) + y * (p.y + 1) + z * (p.z + 1);
     scene.meshes[0].shape = walls;
     return scene;
 }
+SceneDescription slivered_room(double aspect) { return room_of(slivered_cube(aspect)); }
 SceneDescription slivered_walls(double aspect) { return occlusion_of(slivered_room(aspect)); }
+SceneDescription speckled_room(double area) { return room_of(cube_with_specks(area)); }
+SceneDescription speckled_walls(double area) { return occlusion_of(speckled_room(area)); }
 
-// A light of triangles side by side whose widths grow from one to the next, over 12 decades of area.
+// Every other copy of a mesh of quadrilaterals has them cut along the other diagonal: in one plane, but for rounding.
+SceneDescription with_copies(SceneDescription scene, double copies) {
+    const size_t meshes = scene.meshes.size();
+    for (int copy = 1; copy < int(copies); copy++)
+        for (size_t m = 0; m < meshes; m++) {
+            Mesh mesh = scene.meshes[m];
+            if (mesh.radiance || mesh.bsdf.record.kind == BSDF_dielectric)
+                continue;
+            auto &triangles = std::get<TriangleMesh>(mesh.shape).triangles;
+            for (size_t t = 0; copy % 2 && t + 1 < triangles.size(); t += 2) { // a b c, a c d: b c d, b d a
+                const auto a = triangles[t][0], b = triangles[t][1], c = triangles[t][2], d = triangles[t + 1][2];
+                triangles[t] = {b, c, d};
+                triangles[t + 1] = {b, d, a};
+            }
+            scene.meshes.push_back(std::move(mesh));
+        }
+    return scene;
+}
+SceneDescription room_of_copies(double copies) { return with_copies(room(), copies); }
+SceneDescription walls_of_copies(double copies) { return with_copies(closed_walls(), copies); }
+SceneDescription plane_of_copies(double copies) { return with_copies(open_plane(), copies); }
+
+// A light of triangles side by side whose widths grow from one to the next, over 12 decades of area; from 0 on, where floats are dense.
 SceneDescription light_of_triangles(double count) {
     const unsigned n = unsigned(count);
     TriangleMesh strip;
@@ -128,7 +144,7 @@ SceneDescription light_of_triangles(double count) {
         ends.push_back(ends.back() + std::pow(10.0, n > 1 ? 12.0 * i / (n - 1) - 12 : 0));
     for (double end : ends)
         for (double z : {-0.3, 0.3})
-            strip.positions.push_back({-0.4 + 0.8 * end / ends.back(), 0.8, z});
+            strip.positions.push_back({0.8 * end / ends.back(), 0.8, z});
     std::vector<std::array<unsigned, 3>> triangles;
     for (unsigned i = 0; i < n; i++)
         for (const auto &t : {std::array{2 * i, 2 * i + 2, 2 * i + 1}, std::array{2 * i + 1, 2 * i + 2, 2 * i + 3}})
@@ -149,6 +165,20 @@ SceneDescription many_lights(double count) {
 SceneDescription glowing_wall(double) { // what every sample returns is exact: the sum must be, too
     return path_traced({light(quad({-1, -1, 0}, {0, 2, 0}, {2, 0, 0}), 0.1)}, camera({0, 0, -1}, {}, 40), 1);
 }
+SceneDescription glowing_column(double height) { // the picture: one pixel wide
+    SceneDescription scene = glowing_wall(0);
+    scene.camera.width = 1;
+    scene.camera.height = int(height);
+    scene.camera.fov = 2 * std::atan(0.5 / height) * (180 / 3.14159265358979323846);
+    return scene;
+}
+double glow(double) { return double(0.1f); }
+
+SceneDescription room_by_sobol(double) {
+    SceneDescription scene = room();
+    scene.strategy[AXIS_sampler] = CHOICE_sampler_sobol;
+    return scene;
+}
 
 } // namespace
 
@@ -159,15 +189,23 @@ const std::vector<Row> &rows() {
         {.name = "distance", .stretched = "distance from the origin, in sizes of the scene", .values = joined({0}, decades(0, 7)), .start = 0,
          .promised_from = 0, .promised_to = 1e4, .picture = shifted(room), .invariant = true, .closed = shifted(closed_walls), .open = shifted(open_plane)},
         {.name = "detail", .stretched = "size of what is looked at, the world having 1", .values = reversed(decades(-6, -1)), .start = 0.1,
-         .picture = as_detail(room), .invariant = true, .closed = as_detail(closed_walls)},
+         .promised_from = 1e-3, .promised_to = 0.1, .picture = as_detail(room), .invariant = true, .closed = as_detail(closed_walls)},
         {.name = "aspect", .stretched = "aspect of the triangles of closed walls", .values = decades(0, 7), .start = 1, .promised_from = 1,
          .promised_to = 1e4, .picture = slivered_room, .invariant = true, .closed = slivered_walls},
+        {.name = "specks", .stretched = "area of triangles in the middle of those of closed walls, of theirs", .values = reversed(decades(-12, 0)),
+         .start = 1, .promised_from = 1e-12, .promised_to = 1, .picture = speckled_room, .invariant = true, .closed = speckled_walls},
+        {.name = "copies", .stretched = "coplanar copies of every wall, each cut along the other diagonal", .values = {1, 2, 3, 10, 30}, .start = 1,
+         .promised_from = 1, .promised_to = 30, .picture = room_of_copies, .invariant = true, .closed = walls_of_copies, .open = plane_of_copies},
+        {.name = "edges", .stretched = "size of closed meshes, turned and moved; rays at their edges and vertices", .values = decades(-6, 6, 2), .start = 1,
+         .promised_from = 1e-4, .promised_to = 1e4, .probe = probe_edges},
         {.name = "light-size", .stretched = "side of a light at distance 1", .values = decades(-6, 3), .start = 1, .promised_from = 1e-4,
          .promised_to = 1e2, .picture = light_of_size},
         {.name = "light-distance", .stretched = "height of a light of side 1 over a floor", .values = decades(-6, 3), .start = 1, .promised_from = 1e-3,
          .promised_to = 1e2, .picture = light_at_distance},
         {.name = "light-edge-on", .stretched = "angle of a light's plane to the floor's, degrees", .values = reversed(decades(-5, 1)), .start = 10,
          .picture = light_edge_on},
+        {.name = "light-standing", .stretched = "gap between a floor and a light that stands on it", .values = joined(reversed(decades(-7, -1)), {0}),
+         .start = 0.1, .promised_from = 0, .promised_to = 0.1, .picture = light_standing},
         {.name = "radiance", .stretched = "radiance of a light", .values = decades(-20, 20, 5), .start = 1, .promised_from = 1e-15, .promised_to = 1e15,
          .picture = light_of_radiance},
         {.name = "alpha", .stretched = "roughness of a microfacet floor", .values = reversed(decades(-6, 0)), .start = 1, .promised_from = 1e-4,
@@ -177,19 +215,33 @@ const std::vector<Row> &rows() {
         {.name = "phong", .stretched = "exponent", .values = joined({0}, decades(0, 8)), .start = 0, .promised_from = 0, .promised_to = 1e6,
          .picture = phong_floor},
         {.name = "ior", .stretched = "index of a cube of glass", .values = {1 - 1e-6, 1, 1 + 1e-6, 1 + 1e-3, 1.5, 2, 10, 100}, .start = 1.5,
-         .promised_from = 1 - 1e-6, .promised_to = 10, .picture = glass_cube},
-        {.name = "furnace", .stretched = "1 - albedo, all bounces", .values = {1, 0.5, 0.1, 1e-2, 1e-3, 1e-4}, .start = 0.5, .promised_from = 1e-4,
-         .promised_to = 1, .picture = furnace, .truth = furnace_truth, .side = 4, .spp = 4},
+         .promised_from = 1 - 1e-6, .promised_to = 100, .picture = glass_cube},
+        {.name = "critical-angle", .stretched = "sine of the angle beyond total reflection, ulp", .values = {-1e6, -1e5, -1e4, -1e3, -100, -10, -2, -1, 0, 1, 2, 10, 100},
+         .start = -1e6, .probe = probe_critical_angle},
+        {.name = "furnace", .stretched = "1 - albedo, all bounces; below 1e-4 the first 20000", .values = {1, 0.5, 0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-7, 0}, .start = 0.5,
+         .promised_from = 1e-4, .promised_to = 1, .picture = bright_furnace, .truth = [](double d) { return furnace_truth(d, all_bounces(d)); },
+         .tolerance = 1e-3, .side = 4, .spp = 4}, // a sum of 1e4 terms in one float; without roulette there is no noise to hide it in
+        {.name = "depth", .stretched = "segments of the longest path, albedo 0.9", .values = {1, 2, 10, 100, 65535, 65536, 1e6, 0x1p31, 4294967295.0}, .start = 10,
+         .promised_from = 1, .promised_to = 4294967295.0, .picture = deep_furnace, .truth = [](double d) { return furnace_truth(0.1, unsigned(d)); },
+         .side = 4, .spp = 4},
         {.name = "fov", .stretched = "field of view, degrees", .values = joined(decades(-6, 1), {60, 120, 170, 179, 179.9}), .start = 60,
          .promised_from = 1e-3, .promised_to = 170, .picture = seen_through},
         {.name = "near-clip", .stretched = "nearClip", .values = {0.01, 1e-4, 1e-10, 1e-20, 1e-30, 1e-40, 0}, .start = 0.01, .promised_from = 0,
          .promised_to = 0.01, .picture = clipped_near, .invariant = true},
-        {.name = "light-triangles", .stretched = "triangle pairs of a light, areas over 12 decades", .values = decades(0, 4), .start = 1,
-         .promised_from = 1, .promised_to = 1e4, .picture = light_of_triangles},
+        {.name = "numbers", .stretched = "random number, through every warp, BSDF and light", .values = {0, 0x1p-32, 0x1p-24, 0.25, 0.5, 0.75, 1 - 0x1p-24},
+         .start = 0.25, .promised_from = 0, .promised_to = 1, .probe = probe_numbers},
+        {.name = "samplers", .stretched = "samples of a pixel, all samplers, their numbers from the first to the last",
+         .values = {1, 2, 3, 1 << 16, 1 << 24, 0x1p31 - 1, 0x1p32 - 1}, .start = 2, .promised_from = 1, .promised_to = 0x1p32 - 1, .probe = probe_samplers},
+        {.name = "late-samples", .stretched = "first of a pixel's samples, Sobol", .values = {0, 1 << 16, 1 << 24, 0x1p31, 0x1p32 - 65536}, .start = 0,
+         .promised_from = 0, .promised_to = 0x1p32 - 65536, .picture = room_by_sobol, .invariant = true, .value_is = Value::first_sample},
+        {.name = "light-triangles", .stretched = "triangle pairs of a light, areas over 12 decades", .values = joined(decades(0, 5), {5e5}), .start = 1,
+         .promised_from = 1, .promised_to = 5e5, .picture = light_of_triangles, .invariant = true},
         {.name = "emitters", .stretched = "number of lights", .values = decades(0, 4), .start = 1, .promised_from = 1, .promised_to = 1e4,
          .picture = many_lights},
+        {.name = "height", .stretched = "height of a picture one pixel wide", .values = {1, 2, 255, 65535, 65536, 1e6}, .start = 1, .promised_from = 1,
+         .promised_to = 1e6, .picture = glowing_column, .truth = glow, .spp = 4, .value_is = Value::height},
         {.name = "samples", .stretched = "samples of one pixel, all of 0.1", .values = {1, 1 << 10, 1 << 20, 1 << 24, 1 << 26}, .start = 1,
-         .promised_from = 1, .promised_to = 1 << 26, .picture = glowing_wall, .truth = [](double) { return double(0.1f); }, .value_is_spp = true},
+         .promised_from = 1, .promised_to = 1 << 26, .picture = glowing_wall, .truth = glow, .value_is = Value::spp},
     };
     return table;
 }

@@ -18,6 +18,8 @@ TriangleMesh moved(TriangleMesh mesh, const Transform &by) {
 
 Parallelogram moved(const Parallelogram &p, const Transform &by) { return {by.point(p.origin), by.vector(p.u), by.vector(p.v)}; }
 
+} // namespace
+
 SceneDescription moved(SceneDescription scene, const Transform &by) {
     for (Mesh &mesh : scene.meshes)
         std::visit([&](auto &shape) { shape = moved(shape, by); }, mesh.shape);
@@ -26,8 +28,6 @@ SceneDescription moved(SceneDescription scene, const Transform &by) {
     scene.camera.to_world = by * scene.camera.to_world;
     return scene;
 }
-
-} // namespace
 
 Camera camera(Vec3 from, Vec3 to, double fov) {
     Camera camera;
@@ -87,6 +87,45 @@ TriangleMesh cube(Vec3 center, double s, bool inwards) {
         for (unsigned i : {1u, 2u})
             triangles.push_back(inwards ? std::array{f[0], f[i + 1], f[i]} : std::array{f[0], f[i], f[i + 1]});
     return mesh_of(std::move(corners), std::move(triangles));
+}
+
+TriangleMesh slivered_cube(double aspect) {
+    const double ticks[] = {-1, -1 + 1 / aspect, 1};
+    TriangleMesh mesh;
+    for (int i = 0; i < 27; i++)
+        mesh.positions.push_back({ticks[i % 3], ticks[i / 3 % 3], ticks[i / 9]});
+    const unsigned step[] = {1, 3, 9};
+    for (unsigned axis = 0; axis < 3; axis++)
+        for (unsigned side : {0u, 2u}) {
+            const unsigned u = step[(axis + 1) % 3], v = step[(axis + 2) % 3];
+            for (unsigned cell : {0u, u, v, u + v}) {
+                const unsigned a = side * step[axis] + cell, b = a + (side ? v : u), c = a + (side ? u : v), d = a + u + v; // inwards
+                for (const auto &[x, y, z] : {std::array{a, b, d}, std::array{a, d, c}})
+                    mesh.triangles.push_back({{{x, OPAL_NONE}, {y, OPAL_NONE}, {z, OPAL_NONE}}});
+            }
+        }
+    return mesh;
+}
+
+TriangleMesh cube_with_specks(double area) {
+    const TriangleMesh whole = cube({}, 1, true);
+    TriangleMesh cut;
+    cut.positions = whole.positions;
+    for (const auto &t : whole.triangles) {
+        const unsigned inner = unsigned(cut.positions.size());
+        Vec3 middle{};
+        for (const auto &corner : t)
+            middle = middle + whole.positions[corner.position] * (1 / 3.0);
+        for (const auto &corner : t)
+            cut.positions.push_back(middle + (whole.positions[corner.position] - middle) * std::sqrt(area));
+        cut.triangles.push_back({{{inner, OPAL_NONE}, {inner + 1, OPAL_NONE}, {inner + 2, OPAL_NONE}}});
+        for (unsigned c = 0; c < 3 && area < 1; c++) { // a trapezoid along each side
+            const unsigned next = (c + 1) % 3, a = t[c].position, b = t[next].position;
+            cut.triangles.push_back({{{a, OPAL_NONE}, {b, OPAL_NONE}, {inner + next, OPAL_NONE}}});
+            cut.triangles.push_back({{{a, OPAL_NONE}, {inner + next, OPAL_NONE}, {inner + c, OPAL_NONE}}});
+        }
+    }
+    return cut;
 }
 
 Mesh made_of(std::variant<TriangleMesh, Parallelogram> shape, const BsdfRecord &bsdf) {

@@ -16,6 +16,10 @@ BsdfRecord dielectric(double int_ior);
 TriangleMesh mesh_of(std::vector<Vec3> positions, std::vector<std::array<unsigned, 3>> triangles);
 TriangleMesh quad(Vec3 o, Vec3 u, Vec3 v);                            // faces u x v
 TriangleMesh cube(Vec3 center, double half_side, bool inwards);
+// A cube of half side 1 that faces inwards, each side cut twice across, 1 / aspect from the edge.
+TriangleMesh slivered_cube(double aspect);
+// The same cube; in the middle of each triangle lies one of `area` times its area.
+TriangleMesh cube_with_specks(double area);
 Mesh made_of(std::variant<TriangleMesh, Parallelogram> shape, const BsdfRecord &bsdf);
 Mesh light(std::variant<TriangleMesh, Parallelogram> shape, double radiance); // reflects nothing
 
@@ -31,7 +35,9 @@ SceneDescription open_plane();
 // Ambient occlusion instead of the scene's strategy.
 SceneDescription occlusion_of(SceneDescription scene);
 
-// The scene with every point p moved to p * factor + offset: camera, near and far distance too.
+// The scene with every point moved, the camera too.
+SceneDescription moved(SceneDescription scene, const Transform &by);
+// The same by p * factor + offset.
 SceneDescription moved(SceneDescription scene, double factor, Vec3 offset);
 
 } // namespace opal::extremes

@@ -41,7 +41,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"device", {"base", "cl", "flatten"}},
     {"render", {"base", "cl", "scene", "flatten", "device", "image", "stats"}},
     {"trust", {"base", "cl", "scene", "flatten", "device", "image", "stats", "render"}},
-    {"extremes", {"base", "cl", "scene", "flatten", "device", "image", "stats", "render"}},
+    {"extremes", {"base", "cl", "scene", "flatten", "device", "image", "stats", "render", "trust"}},
     {"bench", {"base", "cl", "scene", "flatten", "device", "image", "stats", "render"}},
     {"sweep", {"base", "cl", "scene", "flatten", "device", "image", "stats", "render", "trust"}},
     {"commands", {"base", "cl", "scene", "flatten", "device", "image", "stats", "render", "trust", "sweep", "extremes", "bench"}},
