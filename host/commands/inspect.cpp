@@ -2,8 +2,7 @@
 #include "commands/commands.h"
 #include "commands/options.h"
 #include "device/buffers.h"
-#include "flatten/flat_scene.h"
-#include "scene/sanity.h"
+#include "flatten/sanity.h"
 
 #include <fmt/format.h>
 
@@ -147,7 +146,7 @@ int run_inspect(const InspectOptions &options) {
     print_strategy(scene, lanes);
     print_buffers(flat);
     print_features(flat.features);
-    for (const std::string &line : sanity_warnings(scene))
+    for (const std::string &line : sanity_warnings(scene, flat))
         warn(line);
     return 0;
 }

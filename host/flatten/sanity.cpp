@@ -1,4 +1,4 @@
-#include "scene/sanity.h"
+#include "flatten/sanity.h"
 
 #include <fmt/format.h>
 
@@ -42,7 +42,7 @@ float largest(const float (&color)[3]) { return std::max({color[0], color[1], co
 
 class Checker {
 public:
-    explicit Checker(const SceneDescription &of) : scene(of) {
+    Checker(const SceneDescription &of, const FlatScene &flattened) : scene(of), flat(flattened) {
         for (const Mesh &mesh : scene.meshes)
             std::visit([this](const auto &shape) { extent.add(shape); }, mesh.shape);
         for (const PointLight &light : scene.point_lights)
@@ -54,10 +54,11 @@ public:
         if (away > farthest_camera)
             say(scene.camera.place, "the camera is {:.2g} sizes of the scene away: its rays start where floats lie {:.1g} of that size apart", away,
                 away * 1.2e-7);
-        for (const Mesh &mesh : scene.meshes) {
-            check_shape(mesh);
+        for (size_t i = 0; i < scene.meshes.size(); i++) {
+            const Mesh &mesh = scene.meshes[i];
+            check_size(mesh);
             if (mesh.radiance)
-                check_radiance(mesh.place, *std::max_element(mesh.radiance->begin(), mesh.radiance->end()));
+                check_light(mesh, *std::max_element(mesh.radiance->begin(), mesh.radiance->end()), flat.meshes[i].emitter != OPAL_NONE);
             check_bsdf(mesh.bsdf.record, mesh.bsdf.place.line ? mesh.bsdf.place : mesh.place);
         }
         return lines;
@@ -65,6 +66,7 @@ public:
 
 private:
     const SceneDescription &scene;
+    const FlatScene &flat;
     Extent extent;
     std::vector<std::string> lines;
 
@@ -72,18 +74,18 @@ private:
         lines.push_back(place.text() + ": " + fmt::format(text, std::forward<Arguments>(arguments)...));
     }
 
-    void check_shape(const Mesh &mesh) {
+    void check_size(const Mesh &mesh) {
         const double part = extent_of(mesh).side() / extent.side();
-        if (const auto *shape = std::get_if<TriangleMesh>(&mesh.shape); mesh.radiance && shape && shape->triangles.empty())
-            say(mesh.place, "an area light of no area: it emits nothing");
-        else if (part > 0 && part < least_detail)
+        if (part > 0 && part < least_detail)
             say(mesh.place, "{} is {:.1e} of the scene's size: rays start {:.1g} of its own size above it, and may pass what is nearer", mesh.name, part,
                 1.4e-6 / part);
     }
 
-    void check_radiance(const SourcePlace &place, double radiance) {
+    void check_light(const Mesh &mesh, double radiance, bool emits) {
+        if (radiance > 0 && !emits)
+            say(mesh.place, "an area light of no area, in single precision: it emits nothing");
         if (radiance > largest_radiance || (radiance > 0 && radiance < least_radiance))
-            say(place, "radiance {:.1e}: the image holds it, but its squares leave the range of floats, and with them the error bars", radiance);
+            say(mesh.place, "radiance {:.1e}: the image holds it, but its squares leave the range of floats, and with them the error bars", radiance);
     }
 
     void check_bsdf(const BsdfRecord &record, const SourcePlace &place) {
@@ -109,6 +111,6 @@ private:
 
 } // namespace
 
-std::vector<std::string> sanity_warnings(const SceneDescription &scene) { return Checker(scene).run(); }
+std::vector<std::string> sanity_warnings(const SceneDescription &scene, const FlatScene &flat) { return Checker(scene, flat).run(); }
 
 } // namespace opal
