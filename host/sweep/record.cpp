@@ -16,7 +16,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Point, spp, replicates)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Shot, spp, seconds, rel_mse, file)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceRecord, index, name, driver)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StrategyRecord, name, label, device, lanes, independent, compile_seconds, pilot_cost, pilot_seconds_a_sample, points, shot)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReferenceRecord, made_by, spp, seconds, mean_luminance, stderr_luminance, variance_known)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReferenceRecord, made_by, spp, seconds, mean_luminance, stderr_luminance, variance_known, mean_square)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SweepRecord, version, scene, scene_hash, reference_file, clock, devices, width, height, command,
                                    integrator, replicates, spp, left_out_spp, budget, reference, strategies)
 

@@ -51,6 +51,7 @@ struct ReferenceRecord {
     double seconds = 0;
     double mean_luminance = 0, stderr_luminance = 0;
     bool variance_known = false;
+    double mean_square = 0; // over pixels and R, G, B: what an MSE is measured by
 };
 
 struct SweepRecord {

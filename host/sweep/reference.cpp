@@ -34,6 +34,14 @@ double mean_of(const std::vector<double> &values) {
 
 double mean_luminance(const Image &image) { return mean_of(luminances(image)); }
 
+double mean_square(const Image &image) {
+    double sum = 0;
+    for (const char *channel : channels)
+        for (float v : image.get(channel).values)
+            sum += double(v) * double(v);
+    return sum / (double(channels.size()) * image.width * image.height);
+}
+
 Image reference_of(const Image &a, const Image &b) {
     Image reference{a.width, a.height, {}, {}};
     for (const char *channel : channels) {

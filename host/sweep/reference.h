@@ -22,5 +22,6 @@ ErrorAgainst error_against(const Image &reference, const Image &image);
 Image error_map(const Image &reference, const Image &image);
 
 double mean_luminance(const Image &image);
+double mean_square(const Image &image); // over pixels and R, G, B
 
 } // namespace opal

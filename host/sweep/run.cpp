@@ -134,6 +134,7 @@ private:
                  std::hypot(sa.stderr_luminance, sb.stderr_luminance) / 2, true};
             info(fmt::format("reference by {}: {} samples per pixel, {:.3g} s", best_->label, r.spp, r.seconds));
         }
+        r.mean_square = mean_square(reference_);
         if (!std::filesystem::exists(plan_.folder / "reference.png"))
             write_png(reference_, plan_.folder / "reference.png");
         keep();
