@@ -16,8 +16,8 @@ const std::filesystem::path folder = std::filesystem::path(OPAL_SOURCE_DIR) / "s
 
 std::vector<std::filesystem::path> scene_files() {
     std::vector<std::filesystem::path> files;
-    for (const auto &entry : std::filesystem::directory_iterator(folder))
-        if (entry.path().extension() == ".xml")
+    for (const auto &entry : std::filesystem::recursive_directory_iterator(folder))
+        if (entry.path().extension() == ".xml" && entry.path().parent_path() != folder / "generated")
             files.push_back(entry.path());
     return files;
 }
