@@ -8,6 +8,7 @@
 #include "render/report.h"
 #include "sweep/page.h"
 #include "sweep/run.h"
+#include "sweep/svg.h"
 
 #include <fmt/format.h>
 
@@ -133,6 +134,7 @@ void write_results(const SweepRecord &record, const std::filesystem::path &folde
     const SweepSummary summary = summarise(record);
     save(record, folder, json_of(summary));
     write_safely(folder / "sweep.csv", csv(summary));
+    write_safely(folder / "convergence.svg", svg_file(convergence_plot(summary)));
     write_safely(folder / "index.html", html_page(record, summary, folder));
     for (const std::string &sentence : verdict(record, summary))
         std::cout << sentence << "\n";

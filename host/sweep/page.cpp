@@ -25,10 +25,7 @@ table { border-collapse: collapse; font-size: .9em; font-variant-numeric: tabula
 th, td { padding: .3em .7em; border-bottom: 1px solid #ddd; text-align: right; vertical-align: top }
 th:first-child, td:first-child { text-align: left } td small { display: block; color: #666; white-space: nowrap }
 .dot { display: inline-block; width: .7em; height: .7em; border-radius: 50%; margin-right: .5em }
-svg { width: 100%; font: 13px system-ui, sans-serif } svg text { fill: #222 }
-.decade { stroke: #ccc } .minor { stroke: #eee } .bar { stroke-width: 1.5 }
-.strategy:hover path { stroke-width: 5 } svg:hover .strategy { opacity: .25 } svg:hover .strategy:hover { opacity: 1 }
-svg:not(:has(.strategy:hover)) .strategy { opacity: 1 }
+svg { width: 100% }
 .grid { display: grid; grid-template-columns: repeat(auto-fill, minmax(300px, 1fr)); gap: 1em }
 figure { margin: 0 } .lens { overflow: hidden; cursor: zoom-in } .lens img { display: block; width: 100%; image-rendering: pixelated }
 figure.large { grid-column: 1 / -1 } figure.large .lens { cursor: zoom-out } .lens + .lens { margin-top: 4px }
@@ -131,8 +128,7 @@ std::string how_measured(const SweepRecord &r) {
                                    r.clock == "cpu" ? "CPU seconds of all cores over their number, what the kernels take on a machine of their own"
                                                     : "the device's own kernel times", r.replicates);
     html += "<p><b>relMSE</b> is the mean over pixels and channels of (image &minus; reference)&sup2; / (reference&sup2; + (1 % of the reference's mean)&sup2;): "
-            "1 % is an image whose typical error is a tenth of each pixel's value. It asks the same of dark and bright pixels, where <b>MSE</b>, on which the "
-            "column of efficiencies rests, is decided by the brightest: the two may rank differently. ";
+            "1 % is an image whose typical error is a tenth of each pixel's value. ";
     html += ref.spp ? fmt::format("The reference has {} samples per pixel of <code>{}</code> ({:.3g} s), two halves of samples that no other image here "
                                   "uses; what its own noise adds to the errors is estimated from the halves' difference and subtracted.</p>\n",
                                   ref.spp, html_text(ref.made_by), ref.seconds)
@@ -201,7 +197,8 @@ std::string html_page(const SweepRecord &record, const SweepSummary &summary, co
     html += list_of(verdict(record, summary));
     html += "<h2>Error against time</h2>\n<p>Both axes are logarithmic; bars are 95 % intervals. Lower left is better. Point at a mark for its figures.</p>\n";
     html += convergence_plot(summary);
-    html += "<h2>Time to an error</h2>\n<p>Seconds, extrapolated where no render took as long. Small print: 95 % intervals.</p>\n" + table(summary);
+    html += "<h2>Time to an error</h2>\n<p>Seconds, extrapolated where no render took as long. Small print: 95 % intervals. relMSE asks the same of all pixels; MSE, in the "
+            "column of efficiencies, is decided by the brightest, such as the edges of lamps.</p>\n" + table(summary);
     html += "<h2>What each gives in the same time</h2>\n<p>Under each image its error, |image &minus; reference| / reference: dark blue is none, yellow is as "
             "large as the pixel itself. Point at one to see the same place of all four times as large; click to enlarge.</p>\n";
     html += pictures(summary, folder);

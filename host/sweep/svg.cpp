@@ -10,6 +10,14 @@ namespace {
 
 constexpr double width = 930, height = 500, left = 110, right = 250, top = 20, bottom = 60;
 
+const char *const look = R"(<style>
+svg { font: 13px system-ui, sans-serif } svg text { fill: #222 }
+.decade { stroke: #ccc } .minor { stroke: #eee } .bar { stroke-width: 1.5 }
+.strategy:hover path { stroke-width: 5 } svg:hover .strategy { opacity: .25 } svg:hover .strategy:hover { opacity: 1 }
+svg:not(:has(.strategy:hover)) .strategy { opacity: 1 }
+</style>
+)";
+
 // A logarithmic axis from decades [low, high] to pixels [from, to].
 struct LogAxis {
     double low, high, from, to;
@@ -85,6 +93,13 @@ std::string strategy_color(size_t place) {
     return colors[place % std::size(colors)];
 }
 
+std::string svg_file(std::string svg) {
+    const std::string tag = "<svg ";
+    if (svg.starts_with(tag))
+        svg.replace(0, tag.size(), "<svg xmlns='http://www.w3.org/2000/svg' style='background: white' ");
+    return svg;
+}
+
 std::string convergence_plot(const SweepSummary &summary) {
     double x0 = INFINITY, x1 = 0, y0 = INFINITY, y1 = 0;
     for (const StrategySummary &s : summary.strategies)
@@ -97,7 +112,7 @@ std::string convergence_plot(const SweepSummary &summary) {
         return "<p>Nothing to plot: no error could be told from the reference's own.</p>\n";
     const LogAxis x = axis_of(x0, x1, left, width - right), y = axis_of(y0, y1, height - bottom, top);
     std::string svg = fmt::format("<svg viewBox='0 0 {} {}' role='img' aria-label='relative mean squared error against time'>\n", width, height);
-    svg += grid(x, y);
+    svg += look + grid(x, y);
     double legend = top + 14;
     for (size_t i = 0; i < summary.strategies.size(); i++, legend += 22) {
         const std::string color = strategy_color(i);
