@@ -42,14 +42,25 @@ std::string axes_of(const Sweep &s) {
         svg += fmt::format("<line x1='{0}' x2='{1}' y1='{2:.1f}' y2='{2:.1f}' stroke='#dddddd'/><text x='{3}' y='{4:.1f}' text-anchor='end'>1e{5}</text>\n",
                            left, width - right, down(std::pow(10.0, e)), left - 4, down(std::pow(10.0, e)) + 3, e);
     for (size_t i = 0; i < s.points.size(); i++)
-        svg += fmt::format("<text x='{0:.1f}' y='{1}' text-anchor='end' transform='rotate(-40 {0:.1f} {1})'>{2:.3g}</text>\n",
+        svg += fmt::format("<text x='{0:.1f}' y='{1}' text-anchor='end' transform='rotate(-40 {0:.1f} {1})'>{2:.6g}</text>\n",
                            across(i, s.points.size()), height - bottom + 12, s.points[i].value);
     return svg;
 }
 
+// A pale ground where agreement is promised.
+std::string promise_of(const Sweep &s) {
+    double from = width, to = 0;
+    for (size_t i = 0; i < s.points.size(); i++)
+        if (s.points[i].value >= s.row->promised_from && s.points[i].value <= s.row->promised_to) {
+            from = std::min(from, across(i, s.points.size()));
+            to = std::max(to, across(i, s.points.size()));
+        }
+    return from > to ? "" : fmt::format("<rect x='{:.1f}' y='{}' width='{:.1f}' height='{}' fill='#eef6ee'/>\n", from, top, to - from, height - top - bottom);
+}
+
 std::string panel_of(const Sweep &s) {
     std::string svg = fmt::format("<text x='{}' y='14' font-weight='bold'>{}</text><text x='{}' y='26'>{}</text>\n", left, s.row->name, left, s.row->stretched);
-    svg += axes_of(s);
+    svg += promise_of(s) + axes_of(s);
     for (const Curve &curve : curves) {
         std::string points;
         for (size_t i = 0; i < s.points.size(); i++)
