@@ -45,10 +45,10 @@ static real square_to_beckmann_pdf(v3 h, real alpha) {
     return h.z > 0 ? density : (real)(0);
 }
 
-// Phong lobe around z: (n + 1)/(2 pi) cos^n. z = u^(1/(n+1)); 1 - z^2 by expm1, which keeps all digits for large n.
+// Phong lobe around z: (n + 1)/(2 pi) cos^n. z = u^(1/(n+1)); from 1 - z by expm1, which keeps all digits for large n.
 static v3 square_to_phong_lobe(v2 u, real n) {
-    real log_z = log(u.x) / (n + 1); // -inf at u = 0: z = 0, sine = 1
-    return direction_of(exp(log_z), sqrt(-expm1(2 * log_z)), u.y);
+    real lowered = -expm1(log(u.x) / (n + 1)); // 1 - z; 1 at u = 0, where the logarithm is -inf
+    return direction_of(1 - lowered, sqrt(lowered * (2 - lowered)), u.y);
 }
 // cos^n as exp(n log cos). Near the axis log cos comes from sin^2, as cos itself rounds away what a large n magnifies. No pow: it
 // costs more, and PoCL 3.1's of eight doubles is wrong in all lanes where one lane's base is 0 or NaN.
