@@ -14,7 +14,7 @@ std::string share(const std::optional<double> &value) { return value ? fmt::form
 
 nlohmann::json number(const std::optional<double> &value) { return value ? nlohmann::json(*value) : nlohmann::json(); }
 
-constexpr int width = 380, height = 220, left = 46, top = 34, right = 12, bottom = 40, columns = 3;
+constexpr int width = 380, height = 220, left = 46, top = 34, right = 12, bottom = 40, columns = 4;
 constexpr double least = 1e-9, most = 10; // of the plotted errors
 
 struct Curve {

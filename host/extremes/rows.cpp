@@ -122,10 +122,12 @@ SceneDescription with_copies(SceneDescription scene, double copies) {
             if (mesh.radiance || mesh.bsdf.record.kind == BSDF_dielectric)
                 continue;
             auto &triangles = std::get<TriangleMesh>(mesh.shape).triangles;
-            for (size_t t = 0; copy % 2 && t + 1 < triangles.size(); t += 2) { // a b c, a c d: b c d, b d a
-                const auto a = triangles[t][0], b = triangles[t][1], c = triangles[t][2], d = triangles[t + 1][2];
-                triangles[t] = {b, c, d};
-                triangles[t + 1] = {b, d, a};
+            for (size_t t = 0; copy % 2 && t + 1 < triangles.size(); t += 2) { // both have their first corner and their cut in common
+                const auto p = triangles[t], q = triangles[t + 1];
+                const bool forward = q[1].position == p[2].position;
+                const std::array around = forward ? std::array{p[0], p[1], p[2], q[2]} : std::array{p[0], q[1], p[1], p[2]};
+                triangles[t] = {around[1], around[2], around[3]};
+                triangles[t + 1] = {around[1], around[3], around[0]};
             }
             scene.meshes.push_back(std::move(mesh));
         }
