@@ -70,6 +70,8 @@ static LaneRay load_ray(const LaneRays *rays, int lane) {
     for (int axis = 0; axis < 3; axis++) {
         r.o[axis] = rays->o[axis][lane];
         r.inverse[axis] = rays->inverse[axis][lane];
+        r.near[axis] = r.inverse[axis] < 0 ? 24 + 8 * axis : 8 * axis;
+        r.far[axis] = 24 + 16 * axis - r.near[axis];
     }
     r.shear_x = rays->shear_x[lane]; r.shear_y = rays->shear_y[lane]; r.scale_z = rays->scale_z[lane];
     r.tmin = rays->tmin[lane]; r.tmax = rays->tmax[lane];
@@ -82,17 +84,23 @@ static LaneRay load_ray(const LaneRays *rays, int lane) {
 // The children whose boxes the ray meets, a byte each, and where it enters them. (plane - o) / d loses nothing that
 // matters, and the far side is widened by its error bound, so that no box misses a triangle inside it (Ize 2013).
 static ulong intersect_children(global const BvhNode *node, const LaneRay *ray, real8 *entry) {
-    global const float *lo = node->lo[0], *hi = node->hi[0];
-    int x = ray->inverse[0] < 0, y = ray->inverse[1] < 0, z = ray->inverse[2] < 0;
-    real8 near_x = (load8(x ? hi : lo) - ray->o[0]) * ray->inverse[0];
-    real8 near_y = (load8((y ? hi : lo) + 8) - ray->o[1]) * ray->inverse[1];
-    real8 near_z = (load8((z ? hi : lo) + 16) - ray->o[2]) * ray->inverse[2];
-    real8 far_x = (load8(x ? lo : hi) - ray->o[0]) * ray->inverse[0];
-    real8 far_y = (load8((y ? lo : hi) + 8) - ray->o[1]) * ray->inverse[1];
-    real8 far_z = (load8((z ? lo : hi) + 16) - ray->o[2]) * ray->inverse[2];
+    global const float *planes = node->lo[0]; // and after it node->hi
+    real8 near_x = (load8(planes + ray->near[0]) - ray->o[0]) * ray->inverse[0];
+    real8 near_y = (load8(planes + ray->near[1]) - ray->o[1]) * ray->inverse[1];
+    real8 near_z = (load8(planes + ray->near[2]) - ray->o[2]) * ray->inverse[2];
+    real8 far_x = (load8(planes + ray->far[0]) - ray->o[0]) * ray->inverse[0];
+    real8 far_y = (load8(planes + ray->far[1]) - ray->o[1]) * ray->inverse[1];
+    real8 far_z = (load8(planes + ray->far[2]) - ray->o[2]) * ray->inverse[2];
     *entry = real8_max(real8_max(near_x, near_y), real8_max(near_z, (real8)(ray->tmin)));
     real8 leave = real8_min(real8_min(far_x, far_y), far_z) * (1 + 8 * EPSILON);
     return bytes_of(*entry <= real8_min(leave, (real8)(ray->tmax)));
+}
+
+// Asks for the memory of a child that is put on the stack.
+static void fetch_child(const Scene *scene, uint child) {
+    global const char *at = child & OPAL_LEAF ? (global const char *)(scene->blocks + (child & ~OPAL_LEAF))
+                                              : (global const char *)(scene->nodes + child);
+    FETCH(at); FETCH(at + 64); FETCH(at + 128); FETCH(at + 192); FETCH(at + 256);
 }
 
 // Nearest hit of lane `lane` before its tmax; leaves the outputs as they are where there is none.
@@ -118,6 +126,7 @@ static void walk_closest(const Scene *scene, const LaneRays *rays, int lane, rea
                 int nearer = e < nearest;
                 entries[top] = nearer ? nearest : e;
                 stack[top] = nearer ? child : other;
+                fetch_child(scene, stack[top]);
                 top++;
                 nearest = nearer ? e : nearest;
                 child = nearer ? other : child;
@@ -168,9 +177,18 @@ static int walk_any(const Scene *scene, const LaneRays *rays, int lane) {
     global const uint *children = scene->nodes->child;
     ulong met = upsample(rays->met_high[lane], rays->met_low[lane]);
     for (;;) {
-        for (; met; met &= met - 1) stack[top++] = children[first_of(met)];
-        if (top == 0) return 0;
-        uint child = stack[--top];
+        uint child;
+        if (met) { // on to the first one
+            child = children[first_of(met)];
+            for (met &= met - 1; met; met &= met - 1) {
+                uint other = children[first_of(met)];
+                stack[top++] = other;
+                fetch_child(scene, other);
+            }
+        } else {
+            if (top == 0) return 0;
+            child = stack[--top];
+        }
         if (child & OPAL_LEAF) {
             COUNT_TESTS(scene, blocks, 1);
             if (intersect_block(scene->blocks + (child & ~OPAL_LEAF), &ray).hits) return 1;

@@ -120,6 +120,13 @@ static real8 real8_max(real8 a, real8 b) { return a > b ? a : b; }
 static ulong bytes_of(mask8 truth) { return as_ulong(convert_char8(truth)) & 0x0101010101010101ul; }
 static uint first_of(ulong bytes) { return (uint)(popcount(~bytes & (bytes - 1)) >> 3); } // CL 1.2 has no ctz
 
+// Asks for the cache line at p, a pointer to global char. PoCL's prefetch() does nothing; only a compiler for the CPU itself has the other.
+#if defined(__clang__) && defined(__x86_64__)
+#define FETCH(p) __builtin_prefetch((const void *)(size_t)(p))
+#else
+#define FETCH(p) prefetch(p, 64)
+#endif
+
 // Eight floats of a record in memory, as reals.
 static real8 load8(global const float *p) {
 #if OPAL_DOUBLE

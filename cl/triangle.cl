@@ -25,6 +25,7 @@ typedef struct {
     real1 shear_x, shear_y, scale_z;
     int kx, ky, kz;        // axes: kz is the largest of d
     real1 inverse[3];      // 1 / d, finite
+    int near[3], far[3];   // where a node has the planes of its children that the ray meets first, and last
     real1 tmin, tmax;
 } LaneRay;
 

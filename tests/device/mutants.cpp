@@ -23,7 +23,7 @@ const std::vector<Control> numbers = {
 
 const std::vector<Control> hits = {
     {{"children beyond tmin are dropped", "bvh.cl", "while (entries[top] >= ray.tmax);", "while (entries[top] > 4 * ray.tmin + R(0.3));"}, "tree", check_tree},
-    {{"any-hit enters one child of each node", "bvh.cl", "for (; met; met &= met - 1) stack", "for (; met; met = 0) stack"},
+    {{"any-hit enters one child of each node", "bvh.cl", "for (met &= met - 1; met; met &= met - 1) {\n                uint other = children[first_of(met)];", "for (met &= met - 1; met; met = 0) {\n                uint other = children[first_of(met)];"},
      "tree", check_tree},
     {{"far bound ignored in leaves", "triangle.cl", " & (test.distance < ray->tmax * test.determinant)", ""}, "tree", check_tree},
     {{"near bound ignored in leaves", "triangle.cl", "(test.distance > ray->tmin * test.determinant)", "(test.distance > 0)"}, "tree", check_tree},
