@@ -109,6 +109,11 @@ static int list_lanes(mask m, int *list) {
     return count;
 }
 
+static int count_lanes(mask m) {
+    int list[LANES];
+    return list_lanes(m, list);
+}
+
 static uints uints_pick(mask m, uints yes, uints no) { return to_ints(m) ? yes : no; }
 static v3 v3_pick(mask m, v3 yes, v3 no) { return v3_of(m ? yes.x : no.x, m ? yes.y : no.y, m ? yes.z : no.z); }
 

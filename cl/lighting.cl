@@ -70,7 +70,10 @@ static v3 sampled_light(const Scene *scene, const Path *path, Surface s, mask li
     v3 start = leave_surface(s, to_light);
     v3 end = v3_mad(light.normal, copysign(light.margin, -v3_dot(light.normal, to_light)), light.p);
     Ray shadow = {start, v3_sub(end, start), (real)(0), (real)(1)};
-    return v3_pick(live & !any_hit(scene, shadow, live), light_in, none);
+    mask blocked = any_hit(scene, shadow, live);
+    if (OPAL_TWICE_traversal) blocked = any_hit(scene, same_ray(shadow, blocked | (start.x < FAR)), live);
+    if (OPAL_COUNT_TESTS) COUNT_TESTS(scene, shadow_rays, count_lanes(live));
+    return v3_pick(live & !blocked, light_in, none);
 }
 
 // The least normal float. Below it a path carries nothing, nor may it go on: the least denormal times 0.9 is itself again, for ever.

@@ -17,8 +17,9 @@ typedef struct {
     uint *tests;   // how many of each kind of TESTS_*; null but where they are counted
 } Scene;
 
-// What walks of the tree test beside its root, counted where the program is built for it (BuildOptions::count_tests).
-enum { TESTS_nodes, TESTS_blocks, TESTS_KINDS };
+// Counted where the program is built for it (BuildOptions::count_tests): what walks of the tree test beside its root; rays; rounds of a
+// work-item's loop, each of LANES rays at most.
+enum { TESTS_nodes, TESTS_blocks, TESTS_rays, TESTS_shadow_rays, TESTS_rounds, TESTS_KINDS };
 #define COUNT_TESTS(scene, kind, many) if (OPAL_COUNT_TESTS) (scene)->tests[TESTS_##kind] += (many)
 
 // Every kernel that sees the scene has these parameters, in the order in which the host sets them (host/render/scene_buffers.cpp).
@@ -48,10 +49,24 @@ typedef struct {
     uints slot;
 } Hit;
 
-// A pair of numbers of a dimension, by the chosen sampler.
-static v2 draw(const Scene *scene, Sampler s, uints dimension) {
+// The same ray, which no compiler can know: `always` is true. To trace it twice and see what once costs (BuildOptions::twice).
+static Ray same_ray(Ray ray, mask always) {
+    ray.o = v3_pick(always, ray.o, ray.d);
+    return ray;
+}
+
+static v2 draw_once(const Scene *scene, Sampler s, uints dimension) {
     if (CHOSEN(scene, sampler, sobol)) return sobol_pair(s, dimension, scene->settings->seed);
     if (CHOSEN(scene, sampler, stratified)) return stratified_pair(s, dimension, scene->settings->spp, scene->settings->seed);
     u3 h = pcg3d(s.key0, s.key1, dimension);
     return v2_of(unit_real(h.x), unit_real(h.y));
+}
+
+// A pair of numbers of a dimension, by the chosen sampler.
+static v2 draw(const Scene *scene, Sampler s, uints dimension) {
+    v2 u = draw_once(scene, s, dimension);
+    if (!OPAL_TWICE_sampling) return u;
+    s.key0 = uints_pick(u.x < 2, s.key0, s.key1);
+    s.sample = uints_pick(u.x < 2, s.sample, s.pixel);
+    return draw_once(scene, s, dimension);
 }

@@ -86,7 +86,7 @@ kernel void generate(SCENE_PARAMETERS, uint kind, float lo_x, float lo_y, float 
 #define EACH_RAYS(body) \
     uint begin = (uint)get_global_id(0) * rays_an_item; \
     Scene scene = SCENE_OF_PARAMETERS; \
-    uint counts[TESTS_KINDS] = {0, 0}; \
+    uint counts[TESTS_KINDS] = {0}; \
     scene.tests = counts; \
     for (uint base = begin; base < min(begin + rays_an_item, count); base += LANES) { \
         mask live = to_mask(lane_indices(base) < count); \

@@ -87,8 +87,9 @@ static mask refill(const Scene *scene, Queue *queue, Path *path, mask live) {
     return live | start;
 }
 
-// Puts the radiance of the paths that ended into their slots.
-static void retire(global float *slots, const Path *path, mask ended) {
+// Puts the radiance of the paths that ended into their slots; where tests are counted, the rays, shadow rays and rounds since a path
+// ended before instead, into the slot of the first.
+static void retire(const Scene *scene, global float *slots, const Path *path, mask ended) {
     int lanes[LANES];
     int count = list_lanes(ended, lanes);
     if (count == 0) return;
@@ -98,6 +99,15 @@ static void retire(global float *slots, const Path *path, mask ended) {
     STORE(path->radiance.x, r);
     STORE(path->radiance.y, g);
     STORE(path->radiance.z, b);
+    if (OPAL_COUNT_TESTS) {
+        STORE((real)(0), r);
+        STORE((real)(0), g);
+        STORE((real)(0), b);
+        r[lanes[0]] = scene->tests[TESTS_rays];
+        g[lanes[0]] = scene->tests[TESTS_shadow_rays];
+        b[lanes[0]] = scene->tests[TESTS_rounds];
+        for (uint k = 0; k < TESTS_KINDS; k++) scene->tests[k] = 0;
+    }
     for (int i = 0; i < count; i++) {
         int lane = lanes[i];
         global float *slot = slots + 3 * (ulong)place[lane];
@@ -125,6 +135,8 @@ static Queue queue_of(global const Settings *settings, uint item, uint items, ui
 kernel void render(SCENE_PARAMETERS, global float *slots, uint first_item, uint items, uint tile_width, uint tile_height,
                    uint chunks, uint chunk_samples, uint pass_first, uint pass_samples) {
     Scene scene = SCENE_OF_PARAMETERS;
+    uint counts[TESTS_KINDS] = {0};
+    scene.tests = counts;
     Queue queue = queue_of(settings, first_item + (uint)get_global_id(0), items, tile_width, tile_height, chunks, chunk_samples,
                            pass_first, pass_samples);
     Path path;
@@ -137,8 +149,13 @@ kernel void render(SCENE_PARAMETERS, global float *slots, uint first_item, uint 
         live = refill(&scene, &queue, &path, live);
         if (!ANY(live)) break;
         Hit hit = closest_hit(&scene, path.ray, live);
+        if (OPAL_TWICE_traversal) hit = closest_hit(&scene, same_ray(path.ray, hit.t > -1), live);
+        if (OPAL_COUNT_TESTS) {
+            COUNT_TESTS(&scene, rays, count_lanes(live));
+            COUNT_TESTS(&scene, rounds, 1);
+        }
         mask go_on = integrator_step(&scene, &path, hit, live);
-        retire(slots, &path, live & !go_on);
+        retire(&scene, slots, &path, live & !go_on);
         live = go_on;
     }
 }

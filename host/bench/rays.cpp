@@ -11,7 +11,7 @@ namespace opal {
 
 namespace {
 
-constexpr unsigned tests_kinds = 2; // as in cl/scene.cl: nodes, blocks
+constexpr unsigned tests_kinds = 5; // as in cl/scene.cl: nodes, blocks, and what renders count
 constexpr size_t items_a_launch = 4096;
 
 size_t round_up(size_t n, size_t step) { return (n + step - 1) / step * step; }

@@ -1,5 +1,6 @@
 // opal bench: how fast a scene's rays and paths are on this device.
 #include "bench/rays.h"
+#include "bench/renders.h"
 #include "base/log.h"
 #include "base/table.h"
 #include "commands/commands.h"
@@ -10,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <bit>
+#include <chrono>
 
 namespace opal {
 
@@ -94,16 +96,26 @@ void check_ray_options(const RayOptions &o) {
             check_writable(*file);
 }
 
+// The device that renders the scene, and the kernel's width and math there.
+struct Place {
+    DevicePick pick;
+    BuildOptions build;
+};
+
+Place place_of(const std::string &device, const SceneDescription &scene) {
+    Place place{pick_device(device, list_devices()), {}};
+    place.build.lanes = lanes_for(place.pick.info, scene.strategy.lanes, scene.strategy.math);
+    place.build.math = scene.strategy.math;
+    return place;
+}
+
 int run_rays(const RayOptions &o) {
     check_ray_options(o);
     SceneDescription scene = load_scene(o.scene);
     scene.strategy[AXIS_integrator] = CHOICE_integrator_path; // whatever the image estimates: shadow rays go to the lights
     scene.strategy[AXIS_lighting] = CHOICE_lighting_mis;
     scene.strategy[AXIS_sampler] = CHOICE_sampler_independent;
-    const DevicePick pick = pick_device(o.device, list_devices());
-    BuildOptions build;
-    build.lanes = lanes_for(pick.info, scene.strategy.lanes, scene.strategy.math);
-    build.math = scene.strategy.math;
+    const auto [pick, build] = place_of(o.device, scene);
     const FlatScene flat = flatten(scene, build.lanes);
     const Device device = open_device(pick.info);
     const Sources sources = load_sources(o.scene);
@@ -170,6 +182,98 @@ RunCommand setup_rays(CLI::App &app) {
     return [o] { return run_rays(*o); };
 }
 
+struct RenderBenchOptions {
+    SceneOptions scene;
+    std::string device, json;
+    double seconds = 0.5;
+    int rounds = 5;
+};
+
+json spread_json(const Spread &s) { return {{"median", s.median}, {"least", s.least}, {"greatest", s.greatest}}; }
+
+std::string spread_text(const Spread &s, double unit = 1) {
+    return fmt::format("{:.4g} [{:.4g}, {:.4g}]", s.median / unit, s.least / unit, s.greatest / unit);
+}
+
+// A variant beside the base: a line of text and of JSON.
+json told(const std::string &name, const Race &race) {
+    fmt::print("{:<28}{} M paths/s a CPU-second, {} times the time, compiled in {:.3g} s\n", name, spread_text(race.rates.paths_per_cpu_second, 1e6),
+               spread_text(race.time), race.compile_seconds);
+    return {{"paths_per_second", spread_json(race.rates.paths_per_second)},
+            {"paths_per_cpu_second", spread_json(race.rates.paths_per_cpu_second)},
+            {"time", spread_json(race.time)},
+            {"compile_seconds", race.compile_seconds}};
+}
+
+int run_renders(const RenderBenchOptions &o) {
+    if (!o.json.empty())
+        check_writable(o.json);
+    const SceneDescription scene = load_scene(o.scene);
+    const auto [pick, build] = place_of(o.device, scene);
+    const FlatScene flat = flatten(scene, build.lanes);
+    const Device device = open_device(pick.info);
+    const Sources sources = load_sources(o.scene);
+    BuildOptions fresh = build;
+    fresh.note = fmt::format("{}", std::chrono::system_clock::now().time_since_epoch().count());
+    RenderBench bench(device, flat, build, sources, o.seconds, o.rounds);
+    const double cold = bench.compile_seconds(fresh), warm = bench.compile_seconds(fresh);
+
+    info(fmt::format("device  {} (driver {}; {}), {} lanes", pick.info.name, pick.info.driver, pick.reason, build.lanes));
+    const PathRates rates = bench.rates();
+    const PathCounts counts = bench.counts();
+    const double rays = counts.rays + counts.shadow_rays;
+    fmt::print("{:<28}{} M/s, {} M a CPU-second ({} spp a run)\n", "paths", spread_text(rates.paths_per_second, 1e6),
+               spread_text(rates.paths_per_cpu_second, 1e6), bench.spp());
+    fmt::print("{:<28}{:.4g} M/s: {:.3g} rays and {:.3g} shadow rays a path\n", "rays", rays * rates.paths_per_second.median / 1e6, counts.rays,
+               counts.shadow_rays);
+    fmt::print("{:<28}{:.3g} % on average\n{:<28}{:.3g} s cold, {:.3g} s warm\n", "lanes busy", 100 * counts.lanes_busy, "compilation", cold, warm);
+
+    json report = scene_json(scene, flat, pick.info, build.lanes);
+    report.update({{"spp", bench.spp()},
+                   {"paths_per_second", spread_json(rates.paths_per_second)},
+                   {"paths_per_cpu_second", spread_json(rates.paths_per_cpu_second)},
+                   {"rays_per_path", counts.rays},
+                   {"shadow_rays_per_path", counts.shadow_rays},
+                   {"rays_per_second", rays * rates.paths_per_second.median},
+                   {"lanes_busy", counts.lanes_busy},
+                   {"compile_seconds", {{"cold", cold}, {"warm", warm}}}});
+    double shading = 1;
+    for (const char *stage : {"traversal", "sampling"}) {
+        BuildOptions twice = build;
+        twice.twice = stage;
+        report["twice"][stage] = told(fmt::format("{} twice", stage), bench.race(flat, twice));
+        const double share = report["twice"][stage]["time"]["median"].get<double>() - 1;
+        report["share"][stage] = share;
+        shading -= share;
+    }
+    report["share"]["shading"] = shading;
+    fmt::print("{:<28}{:.3g} % traversal, {:.3g} % random numbers, {:.3g} % shading and all else\n", "share of time",
+               100 * report["share"]["traversal"].get<double>(), 100 * report["share"]["sampling"].get<double>(), 100 * shading);
+    for (int lanes : {1, 4, 8, 16}) {
+        BuildOptions other = build;
+        other.lanes = lanes;
+        report["widths"][std::to_string(lanes)] = told(fmt::format("{} lanes", lanes), bench.race(flatten(scene, lanes), other));
+    }
+    SceneDescription anything = scene;
+    anything.strategy.specialise = false;
+    report["general"] = told("general kernel", bench.race(flatten(anything, build.lanes), build));
+    if (!o.json.empty())
+        write_safely(o.json, report.dump(2) + "\n");
+    return 0;
+}
+
+RunCommand setup_renders(CLI::App &app) {
+    auto o = std::make_shared<RenderBenchOptions>();
+    add_scene_options(app, o->scene);
+    add_device_option(app, o->device);
+    app.add_option("--seconds", o->seconds, "Of each render, about")->check(CLI::Range(0.001, 100.0))->capture_default_str();
+    app.add_option("--rounds", o->rounds, "Times that each is rendered, in turn with the kernel that `opal render` takes; the median is told")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    app.add_option("--json", o->json, "File for the figures")->type_name("FILE");
+    return [o] { return run_renders(*o); };
+}
+
 } // namespace
 
 RunCommand setup_bench(CLI::App &app) {
@@ -177,6 +281,8 @@ RunCommand setup_bench(CLI::App &app) {
     auto runs = std::make_shared<std::map<const CLI::App *, RunCommand>>();
     CLI::App *rays = app.add_subcommand("rays", "Trace camera, bounce and shadow rays of a scene, and nothing else");
     (*runs)[rays] = setup_rays(*rays);
+    CLI::App *renders = app.add_subcommand("render", "Render the scene: paths and rays a second, where time goes, other widths, the general kernel");
+    (*runs)[renders] = setup_renders(*renders);
     return [&app, runs] { return runs->at(app.get_subcommands().front())(); };
 }
 

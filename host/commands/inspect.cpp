@@ -1,4 +1,5 @@
 #include "base/log.h"
+#include "bench/renders.h"
 #include "commands/commands.h"
 #include "commands/options.h"
 #include "device/buffers.h"
@@ -14,7 +15,8 @@ namespace {
 
 struct InspectOptions {
     SceneOptions scene;
-    bool cl = false;
+    bool cl = false, bench = false;
+    std::string device;
 };
 
 // inspect asks no device, so "auto" is what a CPU device on this machine would say of its float vectors.
@@ -131,6 +133,29 @@ void print_features(const Features &features) {
     }
 }
 
+// What each feature that the scene does not need would cost in the kernel.
+void print_savings(const InspectOptions &options, const SceneDescription &scene) {
+    BuildOptions build;
+    const DevicePick pick = pick_device(options.device, list_devices());
+    build.lanes = lanes_for(pick.info, scene.strategy.lanes, scene.strategy.math);
+    build.math = scene.strategy.math;
+    const FlatScene flat = flatten(scene, build.lanes);
+    const Sources sources = load_sources(options.scene);
+    RenderBench bench(open_device(pick.info), flat, build, sources, 0.5, 5);
+    fmt::print("\nsaved by what is left out ({}, {} lanes; time with it over time without, 5 rounds)\n", pick.info.name, build.lanes);
+    for (const Feature &feature : flat.features.list) {
+        if (feature.on)
+            continue;
+        if (flat.emitters.empty() && feature.name.starts_with("emitter_")) {
+            fmt::print("  {:<22}not to be measured: there is no emitter to sample\n", feature.name);
+            continue;
+        }
+        const Race race = bench.race(with_feature(flat, feature.name), build);
+        fmt::print("  {:<22}{:.3f} [{:.3f}, {:.3f}] times, and {:.3g} s to compile\n", feature.name, race.time.median, race.time.least, race.time.greatest,
+                   race.compile_seconds);
+    }
+}
+
 int run_inspect(const InspectOptions &options) {
     const SceneDescription scene = load_scene(options.scene);
     const int lanes = scene.strategy.lanes ? scene.strategy.lanes : host_vector_width();
@@ -148,6 +173,8 @@ int run_inspect(const InspectOptions &options) {
     print_features(flat.features);
     for (const std::string &line : sanity_warnings(scene, flat))
         warn(line);
+    if (options.bench)
+        print_savings(options, scene);
     return 0;
 }
 
@@ -157,6 +184,8 @@ RunCommand setup_inspect(CLI::App &app) {
     auto options = std::make_shared<InspectOptions>();
     add_scene_options(app, options->scene);
     app.add_flag("--cl", options->cl, "Print the text of the kernel's program instead");
+    app.add_flag("--bench", options->bench, "Render with each feature that is left out, and without: what it saved");
+    add_device_option(app, options->device);
     return [options] { return run_inspect(*options); };
 }
 

@@ -12,7 +12,10 @@ struct BuildOptions {
     int lanes = 1;
     MathMode math = MathMode::precise;
     std::string kernels = "kernels/render.cl"; // the file with the entry points, below cl/
-    bool count_tests = false;                  // traversal counts what it tests (Scene::tests), for benchmarks
+    // For benchmarks:
+    bool count_tests = false; // kernels count what they test (Scene::tests); a render's film holds rays, shadow rays and rounds of a path
+    std::string twice{};      // a stage that is done twice, to the same end: "traversal", "sampling" (random numbers)
+    std::string note{};       // letters and digits that make the text another one, which no driver has in its cache
 };
 
 // The width of a kernel on that device: `wanted`, or the device's own where that is 0, which doubles halve (4 at least).
@@ -29,7 +32,7 @@ struct Sources {
     std::string expand(const std::string &file) const;
 };
 
-// Defines (every feature, every axis, LANES, OPAL_DOUBLE, OPAL_FAST, OPAL_COUNT_TESTS) followed by the expanded sources.
+// Defines (every feature, every axis, LANES, OPAL_DOUBLE, OPAL_FAST, OPAL_COUNT_TESTS, OPAL_TWICE_*) followed by the expanded sources.
 std::string program_text(const Features &features, const BuildOptions &options, const Sources &sources);
 
 // Compiles with -cl-std=CL1.2 -Werror (and, for MathMode::fast, -cl-fast-relaxed-math). Error: device, driver, build log.

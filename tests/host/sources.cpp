@@ -61,6 +61,7 @@ TEST_CASE("The program text defines width, precision, every feature and every ax
     options.kernels = "kernels/k.cl";
     const std::string text = program_text(features, options, sources);
     CHECK_THAT(text, Catch::StartsWith("#define LANES 8\n#define OPAL_DOUBLE 0\n#define OPAL_FAST 1\n#define OPAL_COUNT_TESTS 0\n"
+                                       "#define OPAL_TWICE_traversal 0\n#define OPAL_TWICE_sampling 0\n"
                                        "#define OPAL_HAS_tree 1\n#define OPAL_HAS_wide_filter 0\n"
                                        "#define OPAL_AXIS_integrator -1\n#define OPAL_AXIS_lighting 2\n"));
     CHECK_THAT(text, Catch::Contains("#define OPAL_AXIS_sampler -1\n"));

@@ -207,3 +207,22 @@ TEST_CASE("What makes no sense is refused, and nothing is written", "[bench]") {
     CHECK(all.exit_code == 0);
     CHECK_THAT(all.err, Catch::Contains("warning: ") && Catch::Contains("no shadow rays"));
 }
+
+TEST_CASE("bench render times the kernel and its variants", "[bench]") {
+    const ScratchFolder folder;
+    const std::string file = (folder / "json").string();
+    const Outcome outcome = bench("render " + scenes + "cbox_mis.xml --seconds 0.01 --rounds 2 --json " + file);
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    const json stats = json::parse(read_text(file));
+    CHECK(stats["paths_per_second"]["least"] > 0.0);
+    // A path of the Cornell box has a camera ray and, unless that meets the lamp or nothing, more.
+    CHECK((stats["rays_per_path"] > 1.5 && stats["rays_per_path"] < 6.0));
+    CHECK((stats["shadow_rays_per_path"] > 0.5 && stats["shadow_rays_per_path"] < stats["rays_per_path"]));
+    CHECK((stats["lanes_busy"] > 0.5 && stats["lanes_busy"] <= 1.0));
+    CHECK(stats["compile_seconds"]["cold"] > 2 * stats["compile_seconds"]["warm"].get<double>());
+    CHECK(stats["share"]["traversal"] > 0.1);
+    for (const char *lanes : {"1", "4", "8", "16"})
+        CHECK(stats["widths"][lanes]["time"]["median"] > 0.0);
+    CHECK(stats["general"]["time"]["median"] > 1.0);
+}
