@@ -107,8 +107,20 @@ def rgb(values):
     return {"type": "rgb", "value": values}
 
 
+def microfacet(p):
+    """kd / pi + ks D F G / (4 cos cos), ks = 1 - max(kd): a blend by ks of a diffuse base and a rough conductor without absorption,
+    whose Fresnel reflectance is a dielectric's; drawn by D cos as Nori does."""
+    kd = p.get("kd", [0.5] * 3)
+    most = max(kd)
+    base = {"type": "diffuse", "reflectance": rgb([c / most if most > 0 else 0 for c in kd])}
+    coat = {"type": "roughconductor", "distribution": "beckmann", "alpha": p.get("alpha", 0.1), "sample_visible": False,
+            "eta": p.get("intIOR", 1.5046) / p.get("extIOR", 1.000277), "k": 0.0}
+    return {"type": "blendbsdf", "weight": 1 - most, "base": base, "coat": coat}
+
+
 def bsdf(node):
     makers = {
+        "microfacet": microfacet,
         "diffuse": lambda p: {"type": "diffuse", "reflectance": rgb(p.get("albedo", [0.5] * 3))},
         "mirror": lambda p: {"type": "conductor", "material": "none"},
         "dielectric": lambda p: {"type": "dielectric", "int_ior": p.get("intIOR", 1.5046),
