@@ -102,10 +102,11 @@ SweepSummary summarise(const SweepRecord &record) {
         const Point &own = s.record->points.back(), &first = all[0].record->points.back(), &best = all[summary.best].record->points.back();
         s.slower = ratio_of(own, best, rel_mse_seconds);
         s.efficiency = ratio_of(first, own, mse_seconds);
+        s.rel_efficiency = ratio_of(first, own, rel_mse_seconds);
         if (&s == &all[summary.best])
             s.slower = {1, 1, 1};
         if (&s == &all[0])
-            s.efficiency = {1, 1, 1};
+            s.efficiency = s.rel_efficiency = {1, 1, 1};
     }
     return summary;
 }
@@ -116,6 +117,7 @@ nlohmann::json json_of(const SweepSummary &summary) {
     for (const StrategySummary &s : summary.strategies) {
         nlohmann::json j = {{"name", s.record->name}, {"slope", interval(s.slope)}, {"seconds_to_rel_mse_1_percent", interval(s.time_to(0.01))},
                             {"time_relative_to_best", interval(s.slower)}, {"efficiency_relative_to_first", interval(s.efficiency)},
+                            {"rel_mse_efficiency_relative_to_first", interval(s.rel_efficiency)},
                             {"bias", s.bias}, {"bias_p", s.bias_p}};
         for (const PointSummary &p : s.points)
             j["points"].push_back({{"spp", p.spp}, {"replicates", p.replicates}, {"seconds", p.seconds}, {"mse", interval(p.mse)}, {"rel_mse", interval(p.rel_mse)}});

@@ -24,6 +24,7 @@ struct StrategySummary {
     stats::Interval cost;             // relMSE x seconds at the largest spp: seconds to relMSE 1
     stats::Interval slower;           // cost relative to the best strategy's
     stats::Interval efficiency;       // 1 / (MSE x seconds), relative to the baseline's
+    stats::Interval rel_efficiency;   // the same of relMSE
     double bias = 0, bias_p = 1;      // of the mean luminance, relative; Welch's test against the reference
     stats::Interval time_to(double rel_mse) const; // seconds; an estimate alone (infinite interval) for dependent samples
 };
