@@ -61,7 +61,7 @@ Pilot run_pilot(Measured &measured, unsigned seed, double seconds) {
         spp = unsigned(std::clamp(seconds / std::fmax(r.seconds, 1e-9) * spp, 2.0 * spp, 8.0 * spp));
         r = measured.render(spp, seed, pilot_first);
     }
-    Pilot pilot{spp, r.seconds / spp, {}, {}};
+    Pilot pilot{spp, r.seconds / spp, {}, {}, measured.takes_both()};
     for (size_t p = 0; p < r.film.sum.size(); p++) {
         const double n = std::fmax(2, r.film.count[p]), sum = luminance(r.film.sum[p][0], r.film.sum[p][1], r.film.sum[p][2]);
         pilot.mean.push_back(sum / n);
@@ -81,7 +81,8 @@ std::vector<double> pilot_costs(const std::vector<Pilot> &pilots) {
         median[p] = median_of(means);
         floor += 0.01 * median[p] / double(pixels);
     }
-    std::vector<double> costs;
+    std::vector<double> variances;
+    double least_mis = INFINITY;
     for (const Pilot &pilot : pilots) {
         double own = 0, apart = 0;
         for (size_t p = 0; p < pixels; p++) {
@@ -89,7 +90,14 @@ std::vector<double> pilot_costs(const std::vector<Pilot> &pilots) {
             own += scale > 0 ? pilot.variance[p] / scale : 0;
             apart += scale > 0 ? pilot.spp * d * d / scale : 0;
         }
-        costs.push_back(std::fmax(own, apart) / double(pixels) * pilot.seconds_a_sample);
+        variances.push_back(std::fmax(own, apart) / double(pixels));
+        if (pilot.mis)
+            least_mis = std::fmin(least_mis, own / double(pixels));
+    }
+    std::vector<double> costs;
+    for (size_t i = 0; i < pilots.size(); i++) {
+        const double least = pilots[i].mis || !std::isfinite(least_mis) ? 0 : least_mis - 0.5;
+        costs.push_back(std::fmax(variances[i], least) * pilots[i].seconds_a_sample);
     }
     return costs;
 }

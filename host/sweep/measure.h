@@ -28,6 +28,7 @@ public:
 
     double compile_seconds() const { return renderer_->compile_seconds(); }
     int lanes() const;
+    bool takes_both() const { return candidate_.scene.strategy[AXIS_lighting] == CHOICE_lighting_mis; }
 
 private:
     void compile(unsigned spp);
@@ -49,13 +50,15 @@ struct Pilot {
     unsigned spp = 0;
     double seconds_a_sample = 0;        // of each pixel
     std::vector<double> mean, variance; // of each pixel's luminance; the variance is of one sample
+    bool mis = false;                   // takes both kinds of sample
 };
 // A short render: about `seconds` of kernel time. Its samples are for deciding, and no part of any result.
 Pilot run_pilot(Measured &measured, unsigned seed, double seconds);
 
 // For each pilot the seconds to relMSE 1: mean over the pixels of the relative variance of one sample, times its seconds.
 // Relative to the median of all pilots, pixel by pixel. A strategy that has not yet met a small light sees no variance, but is
-// far from that median: the larger of both counts.
+// far from that median: the larger of both counts. One way of sampling alone that seems far better than MIS has not met its rare
+// bright samples: the balance heuristic's variance exceeds no single way's by more than (1 - 1/2) mean^2 (Veach 1997, theorem 9.2).
 std::vector<double> pilot_costs(const std::vector<Pilot> &pilots);
 
 } // namespace opal

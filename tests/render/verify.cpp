@@ -62,7 +62,10 @@ TEST_CASE("All sensible strategies of a right renderer agree", "[verify]") {
     CHECK(report["agree"] == true);
     CHECK(report["strategies"].size() >= 5);
     CHECK(report["pairs"].size() == report["strategies"].size() * (report["strategies"].size() - 1) / 2);
-    CHECK(report["detectable_bias"].get<double>() < 0.02);
+    double least_spp = INFINITY; // a busy machine renders few in that time
+    for (const auto &strategy : report["strategies"])
+        least_spp = std::min(least_spp, strategy["spp"].get<double>());
+    CHECK(report["detectable_bias"].get<double>() < 0.5 / std::sqrt(least_spp)); // 2 % with 625 samples
     CHECK_FALSE(std::filesystem::exists(place.folder / "verify_wall"));
 }
 
