@@ -2,10 +2,10 @@
 
   mitsuba_worker.py VARIANT SCENE.xml RR_DEPTH [WIDTH HEIGHT]
 
-Says one JSON line when the scene is loaded, {width, height, version}, then answers each line `SPP SEED` on its input with
+Says one JSON line when the scene is loaded, {width, height, version, box_filter}, then answers each line `SPP SEED` on its input with
 one: wall and cpu (user + system of all threads) seconds of that render, until its pixels are there; mean_luminance of that
 image and pixel_stderr, the standard error of that mean by the variance of each pixel between the renders of equal SPP so far
-(null at the first; meant for the box filter, where pixels share no sample). An error is {"error": ...} and the end.
+(null at the first; by a wider filter pixels share samples, and vary less). An error is {"error": ...} and the end.
 """
 import json
 import os
@@ -49,9 +49,10 @@ def main():
     import numpy as np
     mi.set_variant(variant)
     scene = nori_to_mitsuba.load(mi, path, rr_depth=int(rr_depth), size=size)
-    width, height = scene.sensors()[0].film().size()
+    film = scene.sensors()[0].film()
+    width, height = film.size()
     say = lambda **answer: print(json.dumps(answer), flush=True)
-    say(width=int(width), height=int(height), version=mi.__version__)
+    say(width=int(width), height=int(height), version=mi.__version__, box_filter="BoxFilter" in str(film.rfilter()))
     luminance = np.array([0.212671, 0.715160, 0.072169])
     of_spp = {}
     for line in sys.stdin:

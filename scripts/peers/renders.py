@@ -31,7 +31,7 @@ class Mitsuba:
         self.process = subprocess.Popen([options.python, worker, variant, scene, str(options.rr_depth), *size], env=env, text=True,
                                         stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.log)
         hello = self.answer()
-        self.pixels, self.version = hello["width"] * hello["height"], hello["version"]
+        self.pixels, self.version, self.box_filter = hello["width"] * hello["height"], hello["version"], hello["box_filter"]
 
     def answer(self):
         line = self.process.stdout.readline()
@@ -51,8 +51,8 @@ class Mitsuba:
         self.process.stdin.flush()
         r = self.answer()
         paths = self.pixels * spp
-        return {"rate": paths / r["wall"], "cpu_rate": paths / r["cpu"], "seconds": r["wall"], "mean": r["mean_luminance"],
-                "stderr": r["pixel_stderr"], "invalid": 0}
+        return {"rate": paths / r["wall"], "cpu_rate": paths / r["cpu"], "paths": paths, "mean": r["mean_luminance"],
+                "stderr": r["pixel_stderr"], "comparable": self.box_filter, "invalid": 0}
 
     def close(self):
         self.process.stdin.close()
@@ -93,7 +93,7 @@ class Opal:
         # Below a clear excess over the start the figure would be noise.
         excess = cpu - self.start_cpu
         return {"rate": r["samples_per_second"], "cpu_rate": paths / excess if excess > 0.2 * self.start_cpu else None,
-                "seconds": paths / r["samples_per_second"], "mean": r["mean_luminance"], "stderr": r["stderr_luminance"],
+                "paths": paths, "mean": r["mean_luminance"], "stderr": r["stderr_luminance"],
                 "invalid": r["invalid_samples"]}
 
 
@@ -106,19 +106,20 @@ def fitting_spp(renderer, seconds):
 
 
 def relative(ours, theirs):
-    """Our runs over theirs, pair by pair in the order they ran; `equal_error` compares 1 / (variance x seconds)."""
+    """Our runs over theirs, pair by pair in the order they ran; `equal_error` compares 1 / (variance x CPU seconds), where
+    the filter is a box: Opal's variance is that of the samples, Mitsuba's that of its filtered pixels."""
     def ratio(key):
         return [a[key] / b[key] for a, b in zip(ours, theirs) if a[key] and b[key]]
 
     def cost(run, stderr):
-        return stderr**2 * run["seconds"]
+        return stderr**2 * run["paths"] / run["cpu_rate"]
 
     mean = lambda runs: statistics.fmean(r["mean"] for r in runs)
     error = lambda runs: runs[-1]["stderr"] / math.sqrt(len(runs))
     variance_of = theirs[-1]["stderr"]  # the last run knows the variance of all of them
     difference = mean(ours) - mean(theirs)
     return {"rate": ratio("rate"), "cpu_rate": ratio("cpu_rate"),
-            "equal_error": [cost(b, variance_of) / cost(a, a["stderr"]) for a, b in zip(ours, theirs)],
+            "equal_error": [cost(b, variance_of) / cost(a, a["stderr"]) for a, b in zip(ours, theirs) if b["comparable"] and a["cpu_rate"]],
             "difference": difference / mean(theirs), "z": difference / math.hypot(error(ours), error(theirs))}
 
 
