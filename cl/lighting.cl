@@ -72,7 +72,7 @@ static v3 sampled_light(const Scene *scene, const Path *path, Surface s, mask li
     Ray shadow = {start, v3_sub(end, start), (real)(0), (real)(1)};
     mask blocked = any_hit(scene, shadow, live);
     if (OPAL_TWICE_traversal) blocked = any_hit(scene, same_ray(shadow, blocked | (start.x < FAR)), live);
-    if (OPAL_COUNT_TESTS) COUNT_TESTS(scene, shadow_rays, count_lanes(live));
+    COUNT_TESTS(scene, shadow_rays, count_lanes(live));
     return v3_pick(live & !blocked, light_in, none);
 }
 

@@ -150,10 +150,8 @@ kernel void render(SCENE_PARAMETERS, global float *slots, uint first_item, uint 
         if (!ANY(live)) break;
         Hit hit = closest_hit(&scene, path.ray, live);
         if (OPAL_TWICE_traversal) hit = closest_hit(&scene, same_ray(path.ray, hit.t > -1), live);
-        if (OPAL_COUNT_TESTS) {
-            COUNT_TESTS(&scene, rays, count_lanes(live));
-            COUNT_TESTS(&scene, rounds, 1);
-        }
+        COUNT_TESTS(&scene, rays, count_lanes(live));
+        COUNT_TESTS(&scene, rounds, 1);
         mask go_on = integrator_step(&scene, &path, hit, live);
         retire(&scene, slots, &path, live & !go_on);
         live = go_on;

@@ -177,7 +177,7 @@ unsigned long long lost_at_edges(double scale, unsigned long long rays, const De
     std::mt19937 random(how.seed);
     const auto unit = [&random] { return double(random()) * 0x1p-32; };
     constexpr unsigned long long batch = 1 << 19;
-    const size_t of_each = size_t(std::clamp<unsigned long long>(rays / closed_meshes().size(), 1, batch));
+    const size_t meshes = closed_meshes().size(), of_each = size_t(std::min((rays + meshes - 1) / meshes, batch)); // up, or all would be done twice
     unsigned long long lost = 0, done = 0;
     while (done < rays)
         for (const ClosedMesh &mesh : closed_meshes()) {

@@ -10,14 +10,6 @@
 namespace opal {
 namespace {
 
-struct Extent {
-    Vec3 lo{INFINITY, INFINITY, INFINITY}, hi{-INFINITY, -INFINITY, -INFINITY};
-    void add(Vec3 p) {
-        lo = {std::fmin(lo.x, p.x), std::fmin(lo.y, p.y), std::fmin(lo.z, p.z)};
-        hi = {std::fmax(hi.x, p.x), std::fmax(hi.y, p.y), std::fmax(hi.z, p.z)};
-    }
-};
-
 std::array<Vec3, 4> corners_of(const Parallelogram &p) {
     return {p.origin, p.origin + p.u, p.origin + p.v, p.origin + p.u + p.v};
 }
@@ -26,7 +18,7 @@ void add_extent(const Parallelogram &shape, Extent &extent) {
     for (Vec3 corner : corners_of(shape))
         extent.add(corner);
 }
-void add_extent(const TriangleMesh &shape, Extent &extent) { // a position that no triangle uses does not count
+void add_extent(const TriangleMesh &shape, Extent &extent) {
     for (const auto &triangle : shape.triangles)
         for (const auto &corner : triangle)
             extent.add(shape.positions[corner.position]);
@@ -98,22 +90,46 @@ private:
 
 } // namespace
 
+void Extent::add(Vec3 p) {
+    lo = {std::fmin(lo.x, p.x), std::fmin(lo.y, p.y), std::fmin(lo.z, p.z)};
+    hi = {std::fmax(hi.x, p.x), std::fmax(hi.y, p.y), std::fmax(hi.z, p.z)};
+}
+
+void Extent::add(const Extent &other) {
+    add(other.lo);
+    add(other.hi);
+}
+
+double Extent::longest_side() const { return empty() ? 0 : std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z}); }
+
+Extent extent_of(const Mesh &mesh) {
+    Extent extent;
+    std::visit([&](const auto &shape) { add_extent(shape, extent); }, mesh.shape);
+    return extent;
+}
+
+Extent extent_of(const SceneDescription &scene) {
+    Extent extent;
+    for (const Mesh &mesh : scene.meshes)
+        if (const Extent part = extent_of(mesh); !part.empty())
+            extent.add(part);
+    for (const PointLight &light : scene.point_lights)
+        extent.add(light.position);
+    return extent;
+}
+
 std::array<float, 3> Frame::operator()(Vec3 world) const {
     const Vec3 p = (world - center) * scale;
     return {float(p.x), float(p.y), float(p.z)};
 }
 
 Frame find_frame(const SceneDescription &scene) {
-    Extent extent;
-    for (const Mesh &mesh : scene.meshes)
-        std::visit([&](const auto &shape) { add_extent(shape, extent); }, mesh.shape);
-    for (const PointLight &light : scene.point_lights)
-        extent.add(light.position);
-    if (extent.lo.x > extent.hi.x)
+    const Extent extent = extent_of(scene);
+    if (extent.empty())
         return {};
-    const Vec3 center = extent.lo * 0.5 + extent.hi * 0.5, half = extent.hi * 0.5 - extent.lo * 0.5;
+    const Vec3 center = extent.middle();
     int exponent; // half side = m 2^exponent, m in [0.5, 1)
-    const double m = std::frexp(std::max({half.x, half.y, half.z}), &exponent);
+    const double m = std::frexp(extent.longest_side() / 2, &exponent);
     if (m == 0)
         return {center, 1};
     return {center, std::ldexp(1.0, m == 0.5 ? 1 - exponent : -exponent)};

@@ -1,5 +1,7 @@
 #include "flatten/sanity.h"
 
+#include "flatten/geometry.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,44 +15,14 @@ constexpr double farthest_camera = 1e3;  // in sizes of the scene
 constexpr float least_alpha = 1e-6f, largest_exponent = 1e8f;
 constexpr double largest_radiance = 1e18, least_radiance = 1e-18; // their squares are summed in floats, for the error bars
 
-struct Extent {
-    Vec3 lo{INFINITY, INFINITY, INFINITY}, hi{-INFINITY, -INFINITY, -INFINITY};
-    void add(Vec3 p) {
-        lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
-        hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
-    }
-    void add(const TriangleMesh &mesh) {
-        for (const auto &triangle : mesh.triangles)
-            for (const auto &corner : triangle)
-                add(mesh.positions[corner.position]);
-    }
-    void add(const Parallelogram &p) {
-        for (Vec3 corner : {p.origin, p.origin + p.u, p.origin + p.v, p.origin + p.u + p.v})
-            add(corner);
-    }
-    double side() const { return lo.x > hi.x ? 0 : std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z}); }
-    Vec3 middle() const { return (lo + hi) * 0.5; }
-};
-
-Extent extent_of(const Mesh &mesh) {
-    Extent extent;
-    std::visit([&extent](const auto &shape) { extent.add(shape); }, mesh.shape);
-    return extent;
-}
-
 float largest(const float (&color)[3]) { return std::max({color[0], color[1], color[2]}); }
 
 class Checker {
 public:
-    Checker(const SceneDescription &of, const FlatScene &flattened) : scene(of), flat(flattened) {
-        for (const Mesh &mesh : scene.meshes)
-            std::visit([this](const auto &shape) { extent.add(shape); }, mesh.shape);
-        for (const PointLight &light : scene.point_lights)
-            extent.add(light.position);
-    }
+    Checker(const SceneDescription &of, const FlatScene &flattened) : scene(of), flat(flattened), extent(extent_of(of)) {}
 
     std::vector<std::string> run() {
-        const double size = extent.side(), away = size > 0 ? length(scene.camera.to_world.point({}) - extent.middle()) / size : 0;
+        const double size = extent.longest_side(), away = size > 0 ? length(scene.camera.to_world.point({}) - extent.middle()) / size : 0;
         if (away > farthest_camera)
             say(scene.camera.place, "the camera is {:.2g} sizes of the scene away: its rays start where floats lie {:.1g} of that size apart", away,
                 away * 1.2e-7);
@@ -67,7 +39,7 @@ public:
 private:
     const SceneDescription &scene;
     const FlatScene &flat;
-    Extent extent;
+    const Extent extent;
     std::vector<std::string> lines;
 
     template <class... Arguments> void say(const SourcePlace &place, fmt::format_string<Arguments...> text, Arguments &&...arguments) {
@@ -75,7 +47,7 @@ private:
     }
 
     void check_size(const Mesh &mesh) {
-        const double part = extent_of(mesh).side() / extent.side();
+        const double part = extent_of(mesh).longest_side() / extent.longest_side();
         if (part > 0 && part < least_detail)
             say(mesh.place, "{} is {:.1e} of the scene's size: rays start {:.1g} of its own size above it, and may pass what is nearer", mesh.name, part,
                 1.4e-6 / part);

@@ -16,7 +16,6 @@ SceneDescription scene_of(const std::vector<Vec3> &positions, const std::vector<
     return scene;
 }
 
-// A sphere of rows x 2 rows quadrilaterals, two triangles each; rows = 2 has few enough triangles for no tree.
 SceneDescription closed_sphere(unsigned rows) {
     std::vector<Vec3> positions;
     std::vector<std::array<unsigned, 3>> triangles;
@@ -28,7 +27,7 @@ SceneDescription closed_sphere(unsigned rows) {
         for (unsigned column = 0; column < columns; column++) {
             const unsigned a = row * columns + column, b = row * columns + (column + 1) % columns, c = a + columns, d = b + columns;
             if (row > 0)
-                triangles.push_back({row == 0 ? 0 : a, b, c});
+                triangles.push_back({a, b, c});
             if (row + 1 < rows)
                 triangles.push_back({b, d, c});
         }
