@@ -1,5 +1,6 @@
 #include "bench/rays.h"
 
+#include "flatten/box.h"
 #include "render/scene_buffers.h"
 
 #include <algorithm>
@@ -22,17 +23,11 @@ BuildOptions with_kernels(BuildOptions build, bool count_tests) {
     return build;
 }
 
-struct Bounds {
-    std::array<float, 3> lo{INFINITY, INFINITY, INFINITY}, hi{-INFINITY, -INFINITY, -INFINITY};
-};
-
-Bounds bounds_of(const FlatScene &scene) {
-    Bounds box;
-    for (const auto &triangle : triangles_of(scene))
-        for (size_t i = 0; i < 9; i++) {
-            box.lo[i % 3] = std::min(box.lo[i % 3], triangle[i]);
-            box.hi[i % 3] = std::max(box.hi[i % 3], triangle[i]);
-        }
+Box bounds_of(const FlatScene &scene) {
+    Box box = Box::empty();
+    for (const auto &t : triangles_of(scene))
+        for (size_t corner = 0; corner < 9; corner += 3)
+            box.add(std::array{t[corner], t[corner + 1], t[corner + 2]});
     return box;
 }
 
@@ -76,7 +71,7 @@ RaySet RayBench::generate(int kind, size_t count, unsigned seed) {
     settings.height = side(settings.height);
     settings.seed = seed;
     const size_t stride = round_up(size_t(settings.width) * settings.height, 16);
-    const Bounds box = bounds_of(scene_);
+    const Box box = bounds_of(scene_);
     const cl::Buffer buffer = make_zeros<float>(device_, TRACE_RAY_PLANES * stride, "the rays");
     with_device(device_.info, [&] {
         device_.queue.enqueueWriteBuffer(buffers_[0], CL_TRUE, 0, sizeof settings, &settings);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace opal::extremes {
 
@@ -91,7 +92,7 @@ Probed probe_numbers(double u, const Device &device, const How &how) {
     }
     for (unsigned bsdf = 0; bsdf < single.scene().bsdfs.size(); bsdf++)
         for (const double degrees : {0.0, 45.0, 89.999}) {
-            const double angle = degrees * (3.14159265358979323846 / 180);
+            const double angle = degrees * (std::numbers::pi / 180);
             const Vec3 wi = {std::sin(angle), 0, std::cos(angle)};
             const Planes a = single.bsdf_sample(bsdf, wi, numbers), b = oracle.bsdf_sample(bsdf, wi, numbers);
             pair.add_planes(a, b, BSDF_WO_X);

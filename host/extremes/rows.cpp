@@ -3,6 +3,7 @@
 #include "extremes/scenes.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace opal::extremes {
 
@@ -51,7 +52,7 @@ Mesh lamp_over(Vec3 at, double side, double radiance) { // faces down
 SceneDescription light_of_size(double side) { return floor_under(lamp_over({0, 1, 0}, side, side < 1 ? 1 / (side * side) : 1), diffuse(0.5)); }
 SceneDescription light_at_distance(double d) { return floor_under(lamp_over({0, d, 0}, 1, d > 1 ? d * d : 1), diffuse(0.5), 0.3); }
 SceneDescription light_edge_on(double degrees) { // between its plane and the middle of the floor
-    const double a = degrees * (3.14159265358979323846 / 180), s = std::sin(a), c = std::cos(a);
+    const double a = degrees * (std::numbers::pi / 180), s = std::sin(a), c = std::cos(a);
     return floor_under(light(Parallelogram{{-1.2, 0.5, -0.3}, {0.6 * c, 0.6 * s, 0}, {0, 0, 0.6}}, 1 / s), diffuse(0.5));
 }
 // A light that stands on the floor, or above a gap.
@@ -60,7 +61,7 @@ SceneDescription light_of_radiance(double radiance) { return floor_under(lamp_ov
 
 SceneDescription rough_floor(double alpha) { return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4), microfacet(alpha)); }
 SceneDescription grazed_floor(double degrees) { // above the floor's plane
-    return floor_under(lamp_over({0, 0.6, 0.5}, 0.5, 4), microfacet(0.1), std::tan(degrees * (3.14159265358979323846 / 180)));
+    return floor_under(lamp_over({0, 0.6, 0.5}, 0.5, 4), microfacet(0.1), std::tan(degrees * (std::numbers::pi / 180)));
 }
 SceneDescription phong_floor(double exponent) { return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4), phong(exponent)); }
 
@@ -171,7 +172,7 @@ SceneDescription glowing_column(double height) { // the picture: one pixel wide
     SceneDescription scene = glowing_wall(0);
     scene.camera.width = 1;
     scene.camera.height = int(height);
-    scene.camera.fov = 2 * std::atan(0.5 / height) * (180 / 3.14159265358979323846);
+    scene.camera.fov = 2 * std::atan(0.5 / height) * (180 / std::numbers::pi);
     return scene;
 }
 double glow(double) { return double(0.1f); }
