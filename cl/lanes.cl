@@ -6,6 +6,9 @@
 //   mask   one truth a lane, as a comparison of reals gives it: combine with & | !, never with ~ (a scalar's truth is 1)
 //   ints, uints   one index or hash a lane; their comparisons go through to_mask before they meet a mask
 //   real1, real8  one number; eight numbers of one ray (children of a node, triangles of a block)
+#if defined(__clang__)
+#pragma clang diagnostic ignored "-Wpsabi" // vectors wider than the processor's are passed in memory: all callers are in this program
+#endif
 #define CAT_(a, b) a##b
 #define CAT(a, b) CAT_(a, b)
 
