@@ -1,5 +1,5 @@
-// bvh: closest and any hit of each lane. The largest triangles of a scene, or all of a tiny one, are listed: each is tested
-// against all lanes at once. The others are in a tree. Its root's children are tested against all lanes at once, too; a lane that
+// bvh: closest and any hit of each lane. The largest faces of a scene, or all of a tiny one, are listed: each is tested against
+// all lanes at once. The other triangles are in a tree. Its root's children are tested against all lanes at once, too; a lane that
 // meets some walks on alone, with the eight children or triangles of a node in one vector.
 // A walk's stack holds OPAL_STACK entries: flatten builds trees that never need more.
 
@@ -202,10 +202,10 @@ static int walk_any(const Scene *scene, const LaneRays *rays, int lane) {
     }
 }
 
-// Listed triangles: the vertices as all lanes see them, moved and sheared once for all triangles that share them.
-typedef struct { real x[OPAL_TINY_VERTICES], y[OPAL_TINY_VERTICES], z[OPAL_TINY_VERTICES]; } TinyView;
+// Listed faces: the vertices as all lanes see them, moved and sheared once for all faces that share them.
+typedef struct { real x[OPAL_LISTED_VERTICES], y[OPAL_LISTED_VERTICES], z[OPAL_LISTED_VERTICES]; } ListedView;
 
-static void view_vertices(const Scene *scene, Ray ray, TinyView *view) {
+static void view_listed(const Scene *scene, Ray ray, ListedView *view) {
     Shear s = shear_of(ray.d);
     // x = v[kx] - shear_x v[kz] - (the same of o), with the axes of each lane as vectors; likewise y, and z = v[kz] - o[kz].
     real zero = 0, one = 1;
@@ -213,8 +213,8 @@ static void view_vertices(const Scene *scene, Ray ray, TinyView *view) {
     v3 py = v3_of(s.x ? -s.shear_y : s.y ? one : zero, s.x ? zero : s.y ? -s.shear_y : one, s.x ? one : s.y ? zero : -s.shear_y);
     v3 pz = v3_scale(v3_of(s.x ? one : zero, s.y ? one : zero, s.x | s.y ? zero : one), s.scale_z);
     real ox = v3_dot(px, ray.o), oy = v3_dot(py, ray.o), oz = v3_dot(pz, ray.o);
-    for (uint i = 0; i < scene->settings->tiny_vertex_count; i++) {
-        real1 x = scene->tiny_vertices[3 * i], y = scene->tiny_vertices[3 * i + 1], z = scene->tiny_vertices[3 * i + 2];
+    for (uint i = 0; i < scene->settings->listed_vertex_count; i++) {
+        real1 x = scene->listed_vertices[3 * i], y = scene->listed_vertices[3 * i + 1], z = scene->listed_vertices[3 * i + 2];
         if (OPAL_HAS_tree) { // to the bit what intersect_block makes of a vertex, or rays leak between its triangles and these
             v3 d = v3_sub(v3_of((real)(x), (real)(y), (real)(z)), ray.o);
             real along = s.x ? d.x : s.y ? d.y : d.z;
@@ -229,65 +229,77 @@ static void view_vertices(const Scene *scene, Ray ray, TinyView *view) {
     }
 }
 
-// Triangle i in that view: inside, and the signed sums that give t = distance / determinant, u = b / determinant, ...
-typedef struct { real b, c, determinant, distance; mask inside; } TinyTest;
+// A face in that view: inside, and the signed sums that give t = distance / determinant, b / determinant, c / determinant, with b and c as
+// ListedFace has them.
+typedef struct { real b, c, determinant, distance; mask inside; } FaceTest;
 
-static TinyTest tiny_test(const TinyView *view, const uint *corner) {
-    uint i = corner[0], j = corner[1], k = corner[2];
-    real a = lanes_edge(view->x[k], view->y[k], view->x[j], view->y[j]);
-    real b = lanes_edge(view->x[i], view->y[i], view->x[k], view->y[k]);
-    real c = lanes_edge(view->x[j], view->y[j], view->x[i], view->y[i]);
-    mask inside = real_min(a, real_min(b, c)) >= 0 | real_max(a, real_max(b, c)) <= 0;
-    real determinant = a + b + c;
-    // One sign for both: then ratios compare by products, without a division a triangle.
+static FaceTest face_test(const ListedView *view, global const ListedFace *face) {
+    uint i = face->corner[0], j = face->corner[1], k = face->corner[2], l = face->corner[3];
+    real c = lanes_edge(view->x[i], view->y[i], view->x[j], view->y[j]);
+    real b = lanes_edge(view->x[k], view->y[k], view->x[i], view->y[i]);
+    real to_far = lanes_edge(view->x[j], view->y[j], view->x[l], view->y[l]);
+    real from_far = lanes_edge(view->x[l], view->y[l], view->x[k], view->y[k]);
+    mask inside = real_min(real_min(b, c), real_min(to_far, from_far)) >= 0 | real_max(real_max(b, c), real_max(to_far, from_far)) <= 0;
+    real a = lanes_edge(view->x[j], view->y[j], view->x[k], view->y[k]), determinant = a + b + c;
+    real distance = mul_add(a, view->z[i], mul_add(b, view->z[j], c * view->z[k]));
+    // One sign for both: then ratios compare by products, without a division a face.
     real sign = copysign((real)(1), determinant);
-    TinyTest test = {b, c, fabs(determinant), sign * mul_add(a, view->z[i], mul_add(b, view->z[j], c * view->z[k])), inside};
+    FaceTest test = {sign * b, sign * c, fabs(determinant), sign * distance, inside};
     return test;
 }
 
-// The nearest of the listed triangles so far, as TinyTest has it.
-typedef struct { real distance, determinant, b, c; uints slot; } TinyBest;
+// The nearest of the listed faces so far, as FaceTest has it.
+typedef struct { real distance, determinant, b, c; uints face; } NearestFace;
 
-static void prefer(TinyBest *best, mask candidate, real distance, real determinant, real b, real c, uints slot) {
+static void prefer(NearestFace *best, mask candidate, real distance, real determinant, real b, real c, uints face) {
     mask nearer = candidate & (distance * best->determinant < best->distance * determinant);
     best->distance = nearer ? distance : best->distance;
     best->determinant = nearer ? determinant : best->determinant;
     best->b = nearer ? b : best->b;
     best->c = nearer ? c : best->c;
-    best->slot = uints_pick(nearer, slot, best->slot);
+    best->face = uints_pick(nearer, face, best->face);
 }
 
-static void tiny_try(const Scene *scene, const TinyView *view, Ray ray, uint i, TinyBest *best) {
-    TinyTriangle triangle = scene->tiny_triangles[i];
-    TinyTest test = tiny_test(view, triangle.corner);
-    prefer(best, test.inside & (test.distance > ray.tmin * test.determinant), test.distance, test.determinant, test.b, test.c,
-           (uints)(triangle.slot));
+static void try_face(const Scene *scene, const ListedView *view, Ray ray, uint i, NearestFace *best) {
+    FaceTest test = face_test(view, scene->listed_faces + i);
+    prefer(best, test.inside & (test.distance > ray.tmin * test.determinant), test.distance, test.determinant, test.b, test.c, (uints)(i));
 }
 
 // Two halves are searched side by side: one comparison waits for the one before.
-static Hit tiny_closest(const Scene *scene, Ray ray, mask live) {
-    TinyView view;
-    view_vertices(scene, ray, &view);
-    TinyBest best = {ray.tmax, (real)(1), (real)(0), (real)(0), (uints)(OPAL_NONE)}, other = best;
-    uint count = scene->settings->tiny_triangle_count, i = 0;
+static Hit listed_closest(const Scene *scene, Ray ray, mask live) {
+    ListedView view;
+    view_listed(scene, ray, &view);
+    NearestFace best = {ray.tmax, (real)(1), (real)(0), (real)(0), (uints)(OPAL_NONE)}, other = best;
+    uint count = scene->settings->listed_face_count, i = 0;
     for (; i + 1 < count; i += 2) {
-        tiny_try(scene, &view, ray, i, &best);
-        tiny_try(scene, &view, ray, i + 1, &other);
+        try_face(scene, &view, ray, i, &best);
+        try_face(scene, &view, ray, i + 1, &other);
     }
-    if (i < count) tiny_try(scene, &view, ray, i, &best);
-    prefer(&best, ALL_LANES, other.distance, other.determinant, other.b, other.c, other.slot);
-    real reciprocal = 1 / best.determinant;
-    Hit hit = {best.distance * reciprocal, fabs(best.b) * reciprocal, fabs(best.c) * reciprocal, best.slot};
+    if (i < count) try_face(scene, &view, ray, i, &best);
+    prefer(&best, ALL_LANES, other.distance, other.determinant, other.b, other.c, other.face);
+    real reciprocal = 1 / best.determinant, b = best.b * reciprocal, c = best.c * reciprocal;
+    mask found = to_mask(best.face != OPAL_NONE), beyond = found & (b + c > 1);
+    uints slot = scene->settings->listed_slot + best.face * 2u;
+    if (ANY(beyond)) { // in the second triangle, D C B
+        uints face = uints_pick(beyond, best.face, (uints)(0));
+        real far_b = GATHER(real, scene->listed_faces, face, .far[0]), far_c = GATHER(real, scene->listed_faces, face, .far[1]);
+        beyond = beyond & (far_b > 0);
+        real d = (b + c - 1) / (far_b + far_c - 1), weight_b = b - d * far_b;
+        b = beyond ? c - d * far_c : b;
+        c = beyond ? weight_b : c;
+        slot = uints_pick(beyond, slot + 1u, slot);
+    }
+    Hit hit = {best.distance * reciprocal, b, c, uints_pick(found, slot, (uints)(OPAL_NONE))};
     return hit;
 }
 
-static mask tiny_any(const Scene *scene, Ray ray, mask live) {
-    TinyView view;
-    view_vertices(scene, ray, &view);
+// `faces`: how many of the list are asked.
+static mask listed_any(const Scene *scene, Ray ray, uint faces, mask live) {
+    ListedView view;
+    view_listed(scene, ray, &view);
     mask blocked = !live;
-    for (uint i = 0; i < scene->settings->tiny_triangle_count; i++) {
-        TinyTriangle triangle = scene->tiny_triangles[i];
-        TinyTest test = tiny_test(&view, triangle.corner);
+    for (uint i = 0; i < faces; i++) {
+        FaceTest test = face_test(&view, scene->listed_faces + i);
         blocked = blocked | (test.inside & (test.distance > ray.tmin * test.determinant) & (test.distance < ray.tmax * test.determinant));
     }
     return blocked & live;
@@ -296,7 +308,7 @@ static mask tiny_any(const Scene *scene, Ray ray, mask live) {
 // The nearest hit of each live lane.
 static Hit closest_hit(const Scene *scene, Ray ray, mask live) {
     Hit hit = {ray.tmax, (real)(0), (real)(0), (uints)(OPAL_NONE)};
-    if (OPAL_HAS_listed) hit = tiny_closest(scene, ray, live);
+    if (OPAL_HAS_listed) hit = listed_closest(scene, ray, live);
     if (!OPAL_HAS_tree) return hit;
     ray.tmax = hit.t;
     LaneRays rays;
@@ -313,10 +325,10 @@ static Hit closest_hit(const Scene *scene, Ray ray, mask live) {
     return nearest;
 }
 
-// The live lanes whose way is blocked between tmin and tmax.
-static mask any_hit(const Scene *scene, Ray ray, mask live) {
+// The live lanes whose way is blocked between tmin and tmax, by the tree or by one of the first `faces` of the list.
+static mask blocked_by(const Scene *scene, Ray ray, uint faces, mask live) {
     mask listed = NO_LANES;
-    if (OPAL_HAS_listed) listed = tiny_any(scene, ray, live);
+    if (OPAL_HAS_listed && faces > 0) listed = listed_any(scene, ray, faces, live);
     if (!OPAL_HAS_tree) return listed;
     LaneRays rays;
     store_rays(&rays, scene, ray, live & !listed);
@@ -327,3 +339,8 @@ static mask any_hit(const Scene *scene, Ray ray, mask live) {
     ints found = LOAD(ints, blocked);
     return listed | to_mask(found != 0);
 }
+
+static mask any_hit(const Scene *scene, Ray ray, mask live) { return blocked_by(scene, ray, scene->settings->listed_face_count, live); }
+
+// The same for a ray from one point of the scene to another: the walls around the scene cannot block it.
+static mask any_hit_between(const Scene *scene, Ray ray, mask live) { return blocked_by(scene, ray, scene->settings->inner_face_count, live); }

@@ -70,8 +70,8 @@ static v3 sampled_light(const Scene *scene, const Path *path, Surface s, mask li
     v3 start = leave_surface(s, to_light);
     v3 end = v3_mad(light.normal, copysign(light.margin, -v3_dot(light.normal, to_light)), light.p);
     Ray shadow = {start, v3_sub(end, start), (real)(0), (real)(1)};
-    mask blocked = any_hit(scene, shadow, live);
-    if (OPAL_TWICE_traversal) blocked = any_hit(scene, same_ray(shadow, blocked | (start.x < FAR)), live);
+    mask blocked = any_hit_between(scene, shadow, live);
+    if (OPAL_TWICE_traversal) blocked = any_hit_between(scene, same_ray(shadow, blocked | (start.x < FAR)), live);
     COUNT_TESTS(scene, shadow_rays, count_lanes(live));
     return v3_pick(live & !blocked, light_in, none);
 }

@@ -8,8 +8,8 @@ typedef struct {
     global const TriangleBlock *blocks;
     global const Triangle *triangles;
     global const float *normals;
-    global const float *tiny_vertices;
-    global const TinyTriangle *tiny_triangles;
+    global const float *listed_vertices;
+    global const ListedFace *listed_faces;
     global const MeshRecord *meshes;
     global const BsdfRecord *bsdfs;
     global const EmitterRecord *emitters;
@@ -25,11 +25,11 @@ enum { TESTS_nodes, TESTS_blocks, TESTS_rays, TESTS_shadow_rays, TESTS_rounds, T
 // Every kernel that sees the scene has these parameters, in the order in which the host sets them (host/render/scene_buffers.cpp).
 #define SCENE_PARAMETERS \
     global const Settings *settings, global const BvhNode *nodes, global const TriangleBlock *blocks, \
-        global const Triangle *triangles, global const float *normals, global const float *tiny_vertices, \
-        global const TinyTriangle *tiny_triangles, global const MeshRecord *meshes, global const BsdfRecord *bsdfs, \
+        global const Triangle *triangles, global const float *normals, global const float *listed_vertices, \
+        global const ListedFace *listed_faces, global const MeshRecord *meshes, global const BsdfRecord *bsdfs, \
         global const EmitterRecord *emitters, global const LightTriangle *light_triangles
 #define SCENE_OF_PARAMETERS \
-    {settings, nodes, blocks, triangles, normals, tiny_vertices, tiny_triangles, meshes, bsdfs, emitters, light_triangles, 0}
+    {settings, nodes, blocks, triangles, normals, listed_vertices, listed_faces, meshes, bsdfs, emitters, light_triangles, 0}
 
 // Is this the choice of that axis? A constant where the kernel is specialised, else read from the settings.
 #define CHOSEN(scene, axis, choice) \

@@ -8,11 +8,11 @@
 
 // Records whose sizes, and members whose offsets, must be the same on both sides.
 #define OPAL_RECORDS(RECORD) \
-    RECORD(BvhNode) RECORD(TriangleBlock) RECORD(Triangle) RECORD(TinyTriangle) RECORD(MeshRecord) RECORD(Settings) \
+    RECORD(BvhNode) RECORD(TriangleBlock) RECORD(Triangle) RECORD(ListedFace) RECORD(MeshRecord) RECORD(Settings) \
     RECORD(BsdfRecord) RECORD(EmitterRecord) RECORD(LightTriangle)
 #define OPAL_MEMBERS(MEMBER) \
-    MEMBER(BvhNode, hi) MEMBER(BvhNode, child) MEMBER(TriangleBlock, id) MEMBER(Triangle, mesh) MEMBER(TinyTriangle, slot) \
-    MEMBER(MeshRecord, emitter) MEMBER(Settings, camera_forward) MEMBER(Settings, far_clip) MEMBER(Settings, tiny_triangle_count) \
+    MEMBER(BvhNode, hi) MEMBER(BvhNode, child) MEMBER(TriangleBlock, id) MEMBER(Triangle, mesh) MEMBER(ListedFace, far) \
+    MEMBER(MeshRecord, emitter) MEMBER(Settings, camera_forward) MEMBER(Settings, far_clip) MEMBER(Settings, listed_slot) \
     MEMBER(Settings, rr_prob) MEMBER(Settings, light_energy) MEMBER(Settings, filter_c) MEMBER(Settings, choices) \
     MEMBER(BsdfRecord, u.diffuse.use_cosine) MEMBER(BsdfRecord, u.dielectric.ext_ior) MEMBER(BsdfRecord, u.microfacet.kd) \
     MEMBER(BsdfRecord, u.phong.n) MEMBER(EmitterRecord, area) MEMBER(EmitterRecord, v) MEMBER(EmitterRecord, probability) \

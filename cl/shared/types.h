@@ -12,8 +12,8 @@ namespace opal {
 #define OPAL_NONE 0xffffffffu        // no emitter, no normal, no hit, no depth limit
 #define OPAL_LEAF 0x80000000u        // a child that is a triangle block
 #define OPAL_STACK 64                // entries that a walk of the tree never exceeds: every other child of every node on the way
-#define OPAL_TINY_TRIANGLES 48       // at most so many triangles are listed outside the tree, where lanes are many ...
-#define OPAL_TINY_VERTICES 96        // ... with at most so many distinct vertices
+#define OPAL_LISTED_TRIANGLES 48     // at most so many triangles are listed outside the tree, where lanes are many ...
+#define OPAL_LISTED_VERTICES 96      // ... with at most so many distinct vertices
 
 // A node of the 8-wide tree: the boxes of its children, one axis and side a row, and what they are.
 // An unused child is OPAL_NONE and has lo = +inf, hi = -inf: a slab test misses it that picks near and far by the
@@ -40,13 +40,14 @@ typedef struct {
 } Triangle;
 OPAL_SIZE_CHECK(Triangle, 16);
 
-// A listed triangle, which is tested against all lanes at once: its corners in the array of distinct vertices, and its
-// slot (block * 8 + place).
+// A listed face, which is tested against all lanes at once: a triangle A B C, or a convex quadrilateral A B D C that stands for the
+// triangles A B C and D C B. Face i has the slots listed_slot + 2 i and, for D C B, the next one. A point of its plane is
+// A + b (B - A) + c (C - A).
 typedef struct {
-    uint corner[3];
-    uint slot;
-} TinyTriangle;
-OPAL_SIZE_CHECK(TinyTriangle, 16);
+    uint corner[4];  // A, B, C, and D or B again: indices into the listed vertices
+    float far[2];    // b and c of D; 0 and 0 for a triangle
+} ListedFace;
+OPAL_SIZE_CHECK(ListedFace, 24);
 
 // A mesh: index of its BSDF, and of its emitter or OPAL_NONE.
 typedef struct {
@@ -67,7 +68,9 @@ typedef struct {
     uint width, height;             // pixels
     uint spp;                       // samples of a pixel in the whole render (the strata of --sampler stratified)
     uint seed;
-    uint tiny_triangle_count, tiny_vertex_count;
+    uint listed_vertex_count, listed_face_count;
+    uint inner_face_count;          // of the listed faces, those with parts of the scene on both sides: they come first
+    uint listed_slot;               // of the first listed triangle: block * 8
     uint emitter_count;
     uint max_depth;                 // segments of the longest path: 1 shows emitters, 2 adds direct light; OPAL_NONE: no limit
     uint rr_depth;                  // roulette starts when a path has this many segments
@@ -81,7 +84,7 @@ typedef struct {
     float filter_b, filter_c;       // mitchell
     int choices[AXIS_COUNT];        // CHOICE_* of each axis; read by the general kernel only
 } Settings;
-OPAL_SIZE_CHECK(Settings, 184);
+OPAL_SIZE_CHECK(Settings, 192);
 
 #ifdef __cplusplus
 }

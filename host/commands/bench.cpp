@@ -45,7 +45,7 @@ json scene_json(const SceneDescription &scene, const FlatScene &flat, const Devi
             {"lanes", lanes},
             {"math", name_of(scene.strategy.math)},
             {"triangles", flat.triangles.size()},
-            {"listed_triangles", flat.tiny_triangles.size()},
+            {"listed_triangles", flat.listed_triangles},
             {"nodes", flat.nodes.size()},
             {"blocks", flat.blocks.size()},
             {"hierarchy_bytes", bytes},
@@ -122,7 +122,7 @@ int run_rays(const RayOptions &o) {
     RayBench bench(device, flat, build, sources);
 
     json report = scene_json(scene, flat, pick.info, build.lanes);
-    info(fmt::format("scene   {}: {} triangles, {} of them listed beside the tree", scene.file.string(), flat.triangles.size(), flat.tiny_triangles.size()));
+    info(fmt::format("scene   {}: {} triangles, {} of them listed beside the tree", scene.file.string(), flat.triangles.size(), flat.listed_triangles));
     info(fmt::format("device  {} (driver {}; {}), {} lanes", pick.info.name, pick.info.driver, pick.reason, build.lanes));
     info(fmt::format("tree    {} nodes, {} blocks, {} ({:.1f} bytes a triangle), SAH cost {:.4g}, built in {:.3g} s", flat.nodes.size(), flat.blocks.size(),
                      bytes_text(report["hierarchy_bytes"].get<size_t>()), report["bytes_per_triangle"].get<double>(), flat.sah_cost, flat.bvh_seconds));

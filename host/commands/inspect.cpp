@@ -112,8 +112,8 @@ void print_buffers(const FlatScene &flat) {
     table("blocks", flat.blocks);
     table("triangles", flat.triangles);
     table("normals", flat.normals);
-    table("tiny vertices", flat.tiny_vertices);
-    table("tiny triangles", flat.tiny_triangles);
+    table("listed vertices", flat.listed_vertices);
+    table("listed faces", flat.listed_faces);
     table("meshes", flat.meshes);
     table("bsdfs", flat.bsdfs);
     table("emitters", flat.emitters);

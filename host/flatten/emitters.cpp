@@ -20,7 +20,7 @@ void store(Vec3 from, float (&to)[3]) {
         to[i] = float(from[i]);
 }
 
-// Where each triangle's vertices are, as TinyTriangle::slot.
+// Where each triangle's vertices are, as Hit has it.
 std::vector<uint> slots_of(const FlatScene &scene) {
     std::vector<uint> slots(scene.triangles.size());
     for (uint slot = 0; slot < scene.blocks.size() * 8; slot++) {

@@ -38,8 +38,9 @@ struct FlatScene {
     std::vector<TriangleBlock> blocks;
     std::vector<Triangle> triangles;
     std::vector<float> normals;             // 3 each
-    std::vector<float> tiny_vertices;       // 3 each, distinct
-    std::vector<TinyTriangle> tiny_triangles; // listed outside the tree
+    std::vector<float> listed_vertices;     // 3 each, distinct
+    std::vector<ListedFace> listed_faces;   // beside the tree
+    uint listed_triangles = 0;              // that these faces stand for
     std::vector<MeshRecord> meshes;
     std::vector<BsdfRecord> bsdfs;          // equal records are shared
     std::vector<EmitterRecord> emitters;

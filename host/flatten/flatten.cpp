@@ -76,12 +76,15 @@ void gather_bsdfs(const SceneDescription &description, FlatScene &scene) {
     }
 }
 
-void build_acceleration(const TriangleSoup &soup, bool with_listed, FlatScene &scene) {
+void build_acceleration(TriangleSoup &soup, const std::vector<std::array<float, 3>> &lights, bool with_listed, FlatScene &scene) {
     const auto start = std::chrono::steady_clock::now();
-    const std::vector<uint> listed = with_listed ? choose_listed(soup) : std::vector<uint>();
-    if (listed.size() < soup.corners.size() || listed.empty())
+    const std::vector<uint> ids = choose_listed(soup);
+    std::vector<Face> listed = pair_up(ids, soup, scene.triangles); // at all widths, so that the same numbers pick the same points of lights
+    if (!with_listed)
+        listed.clear();
+    if (listed.empty() || ids.size() < soup.corners.size())
         plant_tree(soup, listed, scene);
-    list_triangles(soup, listed, scene);
+    list_faces(soup, std::move(listed), lights, scene);
     scene.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -95,8 +98,11 @@ FlatScene flatten(const SceneDescription &description, int lanes) {
     fill_camera(description.camera, frame, scene.settings);
     fill_strategy(description, frame, scene.settings);
     gather_bsdfs(description, scene);
-    const TriangleSoup soup = gather_triangles(description, frame, scene);
-    build_acceleration(soup, lanes >= TINY_LANES && description.strategy.specialise, scene);
+    TriangleSoup soup = gather_triangles(description, frame, scene);
+    std::vector<std::array<float, 3>> lights;
+    for (const PointLight &light : description.point_lights)
+        lights.push_back(frame(light.position));
+    build_acceleration(soup, lights, lanes >= LISTED_LANES && description.strategy.specialise, scene);
     gather_emitters(description, frame, soup, scene);
     scene.settings.emitter_count = uint(scene.emitters.size());
     scene.features = find_features(description, scene, lanes);

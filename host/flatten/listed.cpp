@@ -1,8 +1,11 @@
 #include "flatten/listed.h"
 
+#include "base/math.h"
 #include "flatten/box.h"
+#include "flatten/geometry.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <numeric>
@@ -32,6 +35,83 @@ void rename(std::vector<TriangleBlock> &blocks, const std::vector<uint> &ids) {
             id = id == OPAL_NONE ? OPAL_NONE : ids[id];
 }
 
+using Point = std::array<float, 3>;
+
+Vec3 vec3(const Point &p) { return {p[0], p[1], p[2]}; }
+
+// What rounding may move a coordinate by that is at most 1, a few times over.
+constexpr double ROUNDING = 0x1p-22;
+
+// Makes d the fourth corner of the face a b c, if it is one: in its plane up to rounding, no corner straight or nearly so, both triangles much
+// wider than rounding, and the second not larger than the first, from which the device extrapolates.
+bool add_corner(const Point &a, const Point &b, const Point &c, const Point &d, Face &face) {
+    const Vec3 to_b = vec3(b) - vec3(a), to_c = vec3(c) - vec3(a), to_d = vec3(d) - vec3(a), n = cross(to_b, to_c);
+    double largest = 0, longest2 = 0;
+    for (const Point *p : {&a, &b, &c, &d})
+        for (float coordinate : *p)
+            largest = std::max(largest, double(std::abs(coordinate)));
+    for (Vec3 side : {to_b, to_c, to_d, to_c - to_b, to_d - to_b, to_d - to_c})
+        longest2 = std::max(longest2, dot(side, side));
+    const double n2 = dot(n, n);
+    const auto [far_b, far_c] = std::pair{dot(cross(to_d, to_c), n) / n2, dot(cross(to_b, to_d), n) / n2};
+    const double ratio = far_b + far_c - 1; // of the areas
+    if (std::abs(dot(to_d, n)) > ROUNDING * largest * std::sqrt(n2) || std::min(far_b, far_c) < 0x1p-10 || ratio > 1.001 ||
+        ratio * std::sqrt(n2 / longest2) < 1024 * ROUNDING * largest)
+        return false;
+    face.far[0] = far_b;
+    face.far[1] = far_c;
+    return true;
+}
+
+template <class T> void turn(T &corners, int by) { std::rotate(corners, corners + by, corners + 3); }
+void turn(std::array<uint, 3> &corners, int by) { std::rotate(corners.begin(), corners.begin() + by, corners.end()); }
+
+// The face of two triangles that make one, turned to A B C and D C B; else of the first alone.
+Face make_face(uint first, uint second, TriangleSoup &soup, std::vector<Triangle> &triangles) {
+    const auto corner = [&](uint id, int i) { return soup.vertices[soup.corners[id][size_t(i % 3)]]; };
+    Face face{first, second, {}};
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            if (corner(first, i + 1) == corner(second, j + 2) && corner(first, i + 2) == corner(second, j + 1) &&
+                add_corner(corner(first, i), corner(first, i + 1), corner(first, i + 2), corner(second, j), face)) {
+                turn(soup.corners[first], i);
+                turn(triangles[first].normal, i);
+                turn(soup.corners[second], j);
+                turn(triangles[second].normal, j);
+                return face;
+            }
+    face.second = OPAL_NONE;
+    return face;
+}
+
+// Does the plane of a b c have points of the scene on both sides?
+class Sides {
+public:
+    Sides(const Point &a, const Point &b, const Point &c) : on_plane(vec3(a)) {
+        const Vec3 n = normal_of(a, b, c);
+        normal = n * (1 / length(n));
+    }
+    // False once it has.
+    bool add(const Point &p) {
+        const double distance = dot(vec3(p) - on_plane, normal);
+        lowest = std::min(lowest, distance);
+        highest = std::max(highest, distance);
+        return lowest >= -ROUNDING || highest <= ROUNDING;
+    }
+
+private:
+    Vec3 on_plane, normal;
+    double lowest = 0, highest = 0;
+};
+
+bool is_outer(const Face &face, const TriangleSoup &soup, const std::vector<Point> &lights) {
+    const auto &[a, b, c] = soup.corners[face.first];
+    Sides sides(soup.vertices[a], soup.vertices[b], soup.vertices[c]);
+    const auto add = [&](uint vertex) { return sides.add(soup.vertices[vertex]); };
+    return std::all_of(lights.begin(), lights.end(), [&](const Point &p) { return sides.add(p); }) &&
+           std::all_of(soup.corners.begin(), soup.corners.end(), [&](const auto &corners) { return std::all_of(corners.begin(), corners.end(), add); });
+}
+
 } // namespace
 
 std::vector<uint> choose_listed(const TriangleSoup &soup) {
@@ -39,7 +119,7 @@ std::vector<uint> choose_listed(const TriangleSoup &soup) {
     for (const auto &corners : soup.corners)
         for (uint vertex : corners)
             scene.add(soup.vertices[vertex]);
-    const bool tiny = soup.corners.size() <= OPAL_TINY_TRIANGLES;
+    const bool tiny = soup.corners.size() <= OPAL_LISTED_TRIANGLES;
     std::vector<std::pair<float, uint>> candidates; // -area, id: the largest come first, equals in their order
     for (uint id = 0; id < soup.corners.size(); id++)
         if (const float area = box_of(soup, id).half_area(); tiny || area >= LISTED_SHARE * scene.half_area())
@@ -52,7 +132,7 @@ std::vector<uint> choose_listed(const TriangleSoup &soup) {
         std::set<std::array<float, 3>> with = distinct;
         for (uint vertex : soup.corners[id])
             with.insert(soup.vertices[vertex]);
-        if (listed.size() == OPAL_TINY_TRIANGLES || with.size() > OPAL_TINY_VERTICES)
+        if (listed.size() == OPAL_LISTED_TRIANGLES || with.size() > OPAL_LISTED_VERTICES)
             break;
         distinct = std::move(with);
         listed.push_back(id);
@@ -61,43 +141,71 @@ std::vector<uint> choose_listed(const TriangleSoup &soup) {
     return listed;
 }
 
-void plant_tree(const TriangleSoup &soup, const std::vector<uint> &listed, FlatScene &scene) {
-    Bvh bvh;
-    if (listed.empty()) {
-        bvh = build_bvh(soup);
-    } else {
-        std::vector<uint> all(soup.corners.size()), others;
-        std::iota(all.begin(), all.end(), 0u);
-        std::set_difference(all.begin(), all.end(), listed.begin(), listed.end(), std::back_inserter(others));
-        bvh = build_bvh(only(soup, others));
-        rename(bvh.blocks, others);
+std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, std::vector<Triangle> &triangles) {
+    std::vector<Face> faces;
+    std::vector<uint> left = ids;
+    while (!left.empty()) {
+        Face face{left.front(), OPAL_NONE, {}};
+        for (size_t i = 1; i < left.size() && face.second == OPAL_NONE; i++) {
+            face = make_face(left.front(), left[i], soup, triangles);
+            if (face.second == OPAL_NONE) // the other may be the larger one
+                face = make_face(left[i], left.front(), soup, triangles);
+            if (face.second == OPAL_NONE)
+                face.first = left.front();
+            else
+                left.erase(left.begin() + std::ptrdiff_t(i));
+        }
+        left.erase(left.begin());
+        faces.push_back(face);
     }
+    return faces;
+}
+
+void plant_tree(const TriangleSoup &soup, const std::vector<Face> &listed, FlatScene &scene) {
+    std::vector<char> in_list(soup.corners.size());
+    for (const Face &face : listed)
+        for (uint id : {face.first, face.second})
+            if (id != OPAL_NONE)
+                in_list[id] = 1;
+    std::vector<uint> others;
+    for (uint id = 0; id < soup.corners.size(); id++)
+        if (!in_list[id])
+            others.push_back(id);
+    Bvh bvh = listed.empty() ? build_bvh(soup) : build_bvh(only(soup, others));
+    if (!listed.empty())
+        rename(bvh.blocks, others);
     scene.sah_cost = sah_cost(bvh);
     scene.nodes = std::move(bvh.nodes);
     scene.blocks = std::move(bvh.blocks);
 }
 
-void list_triangles(const TriangleSoup &soup, const std::vector<uint> &listed, FlatScene &scene) {
-    const uint first_slot = uint(scene.blocks.size()) * 8;
+void list_faces(const TriangleSoup &soup, std::vector<Face> listed, const std::vector<std::array<float, 3>> &lights, FlatScene &scene) {
+    const auto outer = std::stable_partition(listed.begin(), listed.end(), [&](const Face &face) { return !is_outer(face, soup, lights); });
+    scene.settings.inner_face_count = uint(outer - listed.begin());
+    scene.settings.listed_face_count = uint(listed.size());
+    scene.settings.listed_slot = uint(scene.blocks.size()) * 8;
+    std::map<Point, uint> vertices;
+    const auto at = [&](uint id, size_t corner) {
+        return vertices.try_emplace(soup.vertices[soup.corners[id][corner]], uint(vertices.size())).first->second;
+    };
+    std::vector<uint> shapes, ids; // by slot: a triangle of its shape, and of its id
+    for (const Face &face : listed) {
+        const bool pair = face.second != OPAL_NONE;
+        const uint a = at(face.first, 0), b = at(face.first, 1), c = at(face.first, 2);
+        scene.listed_faces.push_back({{a, b, c, pair ? at(face.second, 0) : b}, {float(face.far[0]), float(face.far[1])}});
+        scene.listed_triangles += pair ? 2 : 1;
+        shapes.insert(shapes.end(), {face.first, pair ? face.second : face.first});
+        ids.insert(ids.end(), {face.first, face.second});
+    }
     if (!listed.empty()) {
-        std::vector<TriangleBlock> blocks = pack_blocks(only(soup, listed));
-        rename(blocks, listed);
+        std::vector<TriangleBlock> blocks = pack_blocks(only(soup, shapes));
+        rename(blocks, ids);
         scene.blocks.insert(scene.blocks.end(), blocks.begin(), blocks.end());
     }
-    std::map<std::array<float, 3>, uint> known;
-    const auto number = [&](uint vertex) {
-        return known.try_emplace(soup.vertices[vertex], uint(known.size())).first->second;
-    };
-    for (uint i = 0; i < listed.size(); i++) {
-        const auto &corners = soup.corners[listed[i]];
-        const uint a = number(corners[0]), b = number(corners[1]), c = number(corners[2]);
-        scene.tiny_triangles.push_back({{a, b, c}, first_slot + i});
-    }
-    scene.tiny_vertices.resize(3 * known.size());
-    for (const auto &[position, place] : known)
-        std::copy(position.begin(), position.end(), &scene.tiny_vertices[3 * place]);
-    scene.settings.tiny_triangle_count = uint(scene.tiny_triangles.size());
-    scene.settings.tiny_vertex_count = uint(known.size());
+    scene.settings.listed_vertex_count = uint(vertices.size());
+    scene.listed_vertices.resize(3 * vertices.size());
+    for (const auto &[position, place] : vertices)
+        std::copy(position.begin(), position.end(), &scene.listed_vertices[3 * place]);
 }
 
 } // namespace opal

@@ -8,14 +8,25 @@
 namespace opal {
 
 // Ids of the triangles to list: all of a scene that is small enough, else the largest, whose boxes have at least
-// LISTED_SHARE of the surface of the scene's box. At most OPAL_TINY_TRIANGLES, with OPAL_TINY_VERTICES distinct vertices.
+// LISTED_SHARE of the surface of the scene's box. At most OPAL_LISTED_TRIANGLES, with OPAL_LISTED_VERTICES distinct vertices.
 std::vector<uint> choose_listed(const TriangleSoup &soup);
 constexpr double LISTED_SHARE = 0.05;
 
-// The tree over the triangles that are not listed.
-void plant_tree(const TriangleSoup &soup, const std::vector<uint> &listed, FlatScene &scene);
+// A triangle A B C and, where both make a convex quadrilateral A B D C, a second one D C B: their ids, OPAL_NONE for no second one.
+// D = A + far[0] (B - A) + far[1] (C - A).
+struct Face {
+    uint first, second;
+    double far[2];
+};
 
-// Blocks, distinct vertices and corners of the listed triangles.
-void list_triangles(const TriangleSoup &soup, const std::vector<uint> &listed, FlatScene &scene);
+// Finds the quadrilaterals among `ids`. Turns their triangles' corners, in `soup` and in `triangles`, so that they begin at A and at D.
+std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, std::vector<Triangle> &triangles);
+
+// The tree over the triangles that are in none of `listed`.
+void plant_tree(const TriangleSoup &soup, const std::vector<Face> &listed, FlatScene &scene);
+
+// Blocks, distinct vertices and edges of the listed faces. Those with all triangles and `lights` on one side, which no ray between
+// two points of the scene crosses, come last.
+void list_faces(const TriangleSoup &soup, std::vector<Face> listed, const std::vector<std::array<float, 3>> &lights, FlatScene &scene);
 
 } // namespace opal

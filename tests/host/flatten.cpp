@@ -105,6 +105,28 @@ TEST_CASE("every number of the scene reaches the settings", "[flatten]") {
     CHECK(s.choices[AXIS_integrator] == CHOICE_integrator_path);
 }
 
+// The triangles that listed face i stands for: in the slots that the device finds them in, with the corners that it tests.
+std::vector<std::array<std::array<float, 3>, 3>> triangles_of_face(const FlatScene &scene, uint i) {
+    const ListedFace &face = scene.listed_faces[i];
+    const auto at = [&](int corner) {
+        const float *p = &scene.listed_vertices[3 * face.corner[corner]];
+        return std::array<float, 3>{p[0], p[1], p[2]};
+    };
+    std::vector<std::array<std::array<float, 3>, 3>> expected{{at(0), at(1), at(2)}};
+    if (face.far[0] > 0)
+        expected.push_back({at(3), at(2), at(1)});
+    else
+        CHECK(face.corner[3] == face.corner[1]);
+    const uint slot = scene.settings.listed_slot + 2 * i;
+    for (uint which = 0; which < 2; which++) {
+        const bool there = scene.blocks[(slot + which) / 8].id[(slot + which) % 8] != OPAL_NONE;
+        CHECK(there == (which < expected.size()));
+        for (int corner = 0; corner < 3 && there; corner++)
+            CHECK(vertex(scene, slot + which, corner) == expected[which][size_t(corner)]);
+    }
+    return expected;
+}
+
 TEST_CASE("tiny scenes share corners and need no tree", "[flatten]") {
     // A cube of 12 triangles, each face a parallelogram: 24 corners, 8 distinct ones.
     std::vector<Mesh> faces;
@@ -117,20 +139,19 @@ TEST_CASE("tiny scenes share corners and need no tree", "[flatten]") {
     const FlatScene scene = flatten(scene_of(faces), 8);
     CHECK(scene.nodes.empty());
     CHECK_FALSE(scene.features["tree"]);
-    CHECK(scene.settings.tiny_triangle_count == 12);
-    CHECK(scene.settings.tiny_vertex_count == 8);
-    REQUIRE(scene.tiny_triangles.size() == 12);
-    for (const TinyTriangle &triangle : scene.tiny_triangles)
-        for (int corner = 0; corner < 3; corner++) {
-            const float *position = &scene.tiny_vertices[3 * triangle.corner[corner]];
-            CHECK(vertex(scene, triangle.slot, corner) == std::array<float, 3>{position[0], position[1], position[2]});
-            CHECK(scene.blocks[triangle.slot / 8].id[triangle.slot % 8] ==
-                  uint(&triangle - scene.tiny_triangles.data()));
-        }
+    CHECK(scene.listed_triangles == 12);
+    CHECK(scene.settings.listed_vertex_count == 8);
+    CHECK(scene.settings.listed_face_count == 6);
+    CHECK(scene.settings.inner_face_count == 0); // nothing is outside of a cube
+    REQUIRE(scene.listed_faces.size() == 6);
+    for (uint i = 0; i < 6; i++) {
+        CHECK(triangles_of_face(scene, i).size() == 2);
+        CHECK((scene.listed_faces[i].far[0] == Approx(1) && scene.listed_faces[i].far[1] == Approx(1)));
+    }
 
     SECTION("but for few lanes, many triangles, many vertices, or a kernel that can do everything") {
         CHECK(flatten(scene_of(faces), 1).features["tree"]);
-        CHECK(flatten(scene_of(faces), 1).tiny_triangles.empty());
+        CHECK(flatten(scene_of(faces), 1).listed_faces.empty());
         SceneDescription general = scene_of(faces);
         general.strategy.specialise = false;
         CHECK_FALSE(flatten(general, 8).nodes.empty());
@@ -229,7 +250,7 @@ TEST_CASE("the scenes that people have", "[flatten]") {
             const FlatScene scene = flatten(description, lanes);
             CHECK(scene.triangles.size() == triangles);
             CHECK(scene.emitters.size() == lights);
-            CHECK(scene.features["tree"] == (lanes == 1 || triangles > OPAL_TINY_TRIANGLES));
+            CHECK(scene.features["tree"] == (lanes == 1 || triangles > OPAL_LISTED_TRIANGLES));
             if (triangles > 1000) CHECK(scene.sah_cost < 6);
         }
     }
@@ -250,16 +271,13 @@ TEST_CASE("the largest triangles are listed beside the tree, each triangle is in
     const FlatScene scene = flatten(description, 8);
     CHECK(scene.features["listed"]);
     CHECK(scene.features["tree"]);
-    REQUIRE(scene.tiny_triangles.size() == 2);
-    CHECK(scene.tiny_vertices.size() == 3 * 4);
-    for (const TinyTriangle &listed : scene.tiny_triangles) {
-        const uint id = scene.blocks[listed.slot / 8].id[listed.slot % 8];
-        CHECK(scene.triangles[id].mesh == 1);
-        for (int corner = 0; corner < 3; corner++)
-            for (int axis = 0; axis < 3; axis++)
-                CHECK(scene.tiny_vertices[3 * listed.corner[corner] + axis] ==
-                      scene.blocks[listed.slot / 8].vertex[corner][axis][listed.slot % 8]);
-    }
+    REQUIRE(scene.listed_faces.size() == 1);
+    CHECK(scene.listed_triangles == 2);
+    CHECK(scene.settings.inner_face_count == 0); // the grid is on one side of the floor
+    CHECK(scene.listed_vertices.size() == 3 * 4);
+    REQUIRE(triangles_of_face(scene, 0).size() == 2);
+    for (uint place = 0; place < 2; place++)
+        CHECK(scene.triangles[scene.blocks[scene.settings.listed_slot / 8].id[place]].mesh == 1);
     std::vector<int> seen(scene.triangles.size());
     for (const TriangleBlock &block : scene.blocks)
         for (uint id : block.id)
@@ -269,5 +287,37 @@ TEST_CASE("the largest triangles are listed beside the tree, each triangle is in
     // The tree's box is that of the grid.
     const auto &lows = scene.nodes[0].lo[2];
     CHECK(*std::min_element(std::begin(lows), std::end(lows)) == float((1 - scene.center.z) * scene.scale));
-    CHECK(flatten(description, 1).tiny_triangles.empty());
+    CHECK(flatten(description, 1).listed_faces.empty());
+
+    // Light below the floor makes it one that may block.
+    SceneDescription lit = description;
+    lit.point_lights.push_back({{0, 0, -1}, {1, 1, 1}, {}});
+    CHECK(flatten(lit, 8).settings.inner_face_count == 1);
+}
+
+TEST_CASE("two triangles are one face only where they make a convex quadrilateral", "[flatten]") {
+    const std::array<unsigned, 3> front{0, 1, 2};
+    const auto faces = [&](Vec3 far, std::array<unsigned, 3> second) {
+        // A larger triangle below everything keeps the frame the same.
+        const FlatScene scene = flatten(scene_of({diffuse(mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, far}, {front, second})),
+                                                  diffuse(mesh_of({{-4, -4, -1}, {4, -4, -1}, {0, 4, -1}}, {{0, 1, 2}}))}), 8);
+        size_t triangles = 0;
+        for (uint i = 0; i < scene.listed_faces.size(); i++)
+            triangles += triangles_of_face(scene, i).size();
+        CHECK(triangles == 3);
+        CHECK(scene.listed_triangles == 3);
+        return scene.listed_faces.size();
+    };
+    CHECK(faces({1, 1, 0}, {1, 3, 2}) == 2);
+    CHECK(faces({1, 1, 0}, {3, 2, 1}) == 2);
+    CHECK(faces({1, 1, 0}, {2, 1, 3}) == 2);
+    CHECK(faces({0.6, 0.7, 0}, {1, 3, 2}) == 2);      // no parallelogram
+    CHECK(faces({3, 2, 0}, {1, 3, 2}) == 2);          // the second one is the larger
+    CHECK(faces({1, 1, 0}, {1, 2, 3}) == 3);          // they face opposite ways
+    CHECK(faces({1, 1, 1e-5}, {1, 3, 2}) == 3);       // not plane
+    CHECK(faces({0.5, 0.5001, 0}, {1, 3, 2}) == 3);   // the second one is a sliver
+    CHECK(faces({1, -0.5, 0}, {1, 3, 2}) == 3);       // reflex at B
+    CHECK(faces({2, 0, 0}, {1, 3, 2}) == 3);          // straight at B
+    CHECK(faces({0.2, 0.2, 0}, {1, 3, 2}) == 3);      // one covers the other
+    CHECK(faces({1, 1, 0}, {0, 1, 3}) == 3);          // likewise
 }
