@@ -205,7 +205,8 @@ static int walk_any(const Scene *scene, const LaneRays *rays, int lane) {
 // Listed faces: the vertices as all lanes see them, moved and sheared once for all faces that share them.
 typedef struct { real x[OPAL_LISTED_VERTICES], y[OPAL_LISTED_VERTICES], z[OPAL_LISTED_VERTICES]; } ListedView;
 
-static void view_listed(const Scene *scene, Ray ray, ListedView *view) {
+// The first `count` vertices.
+static void view_listed(const Scene *scene, Ray ray, uint count, ListedView *view) {
     Shear s = shear_of(ray.d);
     // x = v[kx] - shear_x v[kz] - (the same of o), with the axes of each lane as vectors; likewise y, and z = v[kz] - o[kz].
     real zero = 0, one = 1;
@@ -213,7 +214,7 @@ static void view_listed(const Scene *scene, Ray ray, ListedView *view) {
     v3 py = v3_of(s.x ? -s.shear_y : s.y ? one : zero, s.x ? zero : s.y ? -s.shear_y : one, s.x ? one : s.y ? zero : -s.shear_y);
     v3 pz = v3_scale(v3_of(s.x ? one : zero, s.y ? one : zero, s.x | s.y ? zero : one), s.scale_z);
     real ox = v3_dot(px, ray.o), oy = v3_dot(py, ray.o), oz = v3_dot(pz, ray.o);
-    for (uint i = 0; i < scene->settings->listed_vertex_count; i++) {
+    for (uint i = 0; i < count; i++) {
         real1 x = scene->listed_vertices[3 * i], y = scene->listed_vertices[3 * i + 1], z = scene->listed_vertices[3 * i + 2];
         if (OPAL_HAS_tree) { // to the bit what intersect_block makes of a vertex, or rays leak between its triangles and these
             v3 d = v3_sub(v3_of((real)(x), (real)(y), (real)(z)), ray.o);
@@ -268,9 +269,9 @@ static void try_face(const Scene *scene, const ListedView *view, Ray ray, uint i
 // Two halves are searched side by side: one comparison waits for the one before.
 static Hit listed_closest(const Scene *scene, Ray ray, mask live) {
     ListedView view;
-    view_listed(scene, ray, &view);
+    view_listed(scene, ray, scene->settings->listed.vertices, &view);
     NearestFace best = {ray.tmax, (real)(1), (real)(0), (real)(0), (uints)(OPAL_NONE)}, other = best;
-    uint count = scene->settings->listed_face_count, i = 0;
+    uint count = scene->settings->listed.faces, i = 0;
     for (; i + 1 < count; i += 2) {
         try_face(scene, &view, ray, i, &best);
         try_face(scene, &view, ray, i + 1, &other);
@@ -293,12 +294,12 @@ static Hit listed_closest(const Scene *scene, Ray ray, mask live) {
     return hit;
 }
 
-// `faces`: how many of the list are asked.
-static mask listed_any(const Scene *scene, Ray ray, uint faces, mask live) {
+// `among`: which faces are asked, from the first on.
+static mask listed_any(const Scene *scene, Ray ray, FaceRange among, mask live) {
     ListedView view;
-    view_listed(scene, ray, &view);
+    view_listed(scene, ray, among.vertices, &view);
     mask blocked = !live;
-    for (uint i = 0; i < faces; i++) {
+    for (uint i = 0; i < among.faces; i++) {
         FaceTest test = face_test(&view, scene->listed_faces + i);
         blocked = blocked | (test.inside & (test.distance > ray.tmin * test.determinant) & (test.distance < ray.tmax * test.determinant));
     }
@@ -325,10 +326,10 @@ static Hit closest_hit(const Scene *scene, Ray ray, mask live) {
     return nearest;
 }
 
-// The live lanes whose way is blocked between tmin and tmax, by the tree or by one of the first `faces` of the list.
-static mask blocked_by(const Scene *scene, Ray ray, uint faces, mask live) {
+// The live lanes whose way is blocked between tmin and tmax, by the tree or by one of those listed faces.
+static mask blocked_by(const Scene *scene, Ray ray, FaceRange among, mask live) {
     mask listed = NO_LANES;
-    if (OPAL_HAS_listed && faces > 0) listed = listed_any(scene, ray, faces, live);
+    if (OPAL_HAS_listed && among.faces > 0) listed = listed_any(scene, ray, among, live);
     if (!OPAL_HAS_tree) return listed;
     LaneRays rays;
     store_rays(&rays, scene, ray, live & !listed);
@@ -340,7 +341,7 @@ static mask blocked_by(const Scene *scene, Ray ray, uint faces, mask live) {
     return listed | to_mask(found != 0);
 }
 
-static mask any_hit(const Scene *scene, Ray ray, mask live) { return blocked_by(scene, ray, scene->settings->listed_face_count, live); }
+static mask any_hit(const Scene *scene, Ray ray, mask live) { return blocked_by(scene, ray, scene->settings->listed, live); }
 
 // The same for a ray from one point of the scene to another: the walls around the scene cannot block it.
-static mask any_hit_between(const Scene *scene, Ray ray, mask live) { return blocked_by(scene, ray, scene->settings->inner_face_count, live); }
+static mask any_hit_between(const Scene *scene, Ray ray, mask live) { return blocked_by(scene, ray, scene->settings->listed_inside, live); }

@@ -28,7 +28,7 @@ static v3 emitted(const Scene *scene, const Path *path, Surface s, Hit hit, mask
     mask shining = found & to_mask(s.emitter != OPAL_NONE) & (s.wi.z > 0);
     if (CHOSEN(scene, lighting, emitter)) shining = shining & path->direct;
     if (!ANY(shining)) return none;
-    uints id = uints_pick(shining, s.emitter, (uints)(0));
+    uints id = OPAL_HAS_many_emitters ? uints_pick(shining, s.emitter, (uints)(0)) : (uints)(0);
     v3 radiance = emitter_radiance(scene, id);
     if (CHOSEN(scene, lighting, mis)) {
         // Both densities over solid angle; the light's is turned by distance^2 / cosine.

@@ -8,7 +8,7 @@
 
 // Records whose sizes, and members whose offsets, must be the same on both sides.
 #define OPAL_RECORDS(RECORD) \
-    RECORD(BvhNode) RECORD(TriangleBlock) RECORD(Triangle) RECORD(ListedFace) RECORD(MeshRecord) RECORD(Settings) \
+    RECORD(BvhNode) RECORD(TriangleBlock) RECORD(Triangle) RECORD(ListedFace) RECORD(FaceRange) RECORD(MeshRecord) RECORD(Settings) \
     RECORD(BsdfRecord) RECORD(EmitterRecord) RECORD(LightTriangle)
 #define OPAL_MEMBERS(MEMBER) \
     MEMBER(BvhNode, hi) MEMBER(BvhNode, child) MEMBER(TriangleBlock, id) MEMBER(Triangle, mesh) MEMBER(ListedFace, far) \

@@ -49,6 +49,12 @@ typedef struct {
 } ListedFace;
 OPAL_SIZE_CHECK(ListedFace, 24);
 
+// The first so many listed faces, and the vertices that they need.
+typedef struct {
+    uint faces, vertices;
+} FaceRange;
+OPAL_SIZE_CHECK(FaceRange, 8);
+
 // A mesh: index of its BSDF, and of its emitter or OPAL_NONE.
 typedef struct {
     uint bsdf, emitter;
@@ -68,8 +74,8 @@ typedef struct {
     uint width, height;             // pixels
     uint spp;                       // samples of a pixel in the whole render (the strata of --sampler stratified)
     uint seed;
-    uint listed_vertex_count, listed_face_count;
-    uint inner_face_count;          // of the listed faces, those with parts of the scene on both sides: they come first
+    FaceRange listed;
+    FaceRange listed_inside;        // those faces that parts of the scene are on both sides of
     uint listed_slot;               // of the first listed triangle: block * 8
     uint emitter_count;
     uint max_depth;                 // segments of the longest path: 1 shows emitters, 2 adds direct light; OPAL_NONE: no limit
@@ -84,7 +90,7 @@ typedef struct {
     float filter_b, filter_c;       // mitchell
     int choices[AXIS_COUNT];        // CHOICE_* of each axis; read by the general kernel only
 } Settings;
-OPAL_SIZE_CHECK(Settings, 192);
+OPAL_SIZE_CHECK(Settings, 196);
 
 #ifdef __cplusplus
 }

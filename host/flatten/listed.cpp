@@ -181,8 +181,6 @@ void plant_tree(const TriangleSoup &soup, const std::vector<Face> &listed, FlatS
 
 void list_faces(const TriangleSoup &soup, std::vector<Face> listed, const std::vector<std::array<float, 3>> &lights, FlatScene &scene) {
     const auto outer = std::stable_partition(listed.begin(), listed.end(), [&](const Face &face) { return !is_outer(face, soup, lights); });
-    scene.settings.inner_face_count = uint(outer - listed.begin());
-    scene.settings.listed_face_count = uint(listed.size());
     scene.settings.listed_slot = uint(scene.blocks.size()) * 8;
     std::map<Point, uint> vertices;
     const auto at = [&](uint id, size_t corner) {
@@ -196,13 +194,15 @@ void list_faces(const TriangleSoup &soup, std::vector<Face> listed, const std::v
         scene.listed_triangles += pair ? 2 : 1;
         shapes.insert(shapes.end(), {face.first, pair ? face.second : face.first});
         ids.insert(ids.end(), {face.first, face.second});
+        scene.settings.listed = {uint(scene.listed_faces.size()), uint(vertices.size())};
+        if (scene.listed_faces.size() == size_t(outer - listed.begin()))
+            scene.settings.listed_inside = scene.settings.listed;
     }
     if (!listed.empty()) {
         std::vector<TriangleBlock> blocks = pack_blocks(only(soup, shapes));
         rename(blocks, ids);
         scene.blocks.insert(scene.blocks.end(), blocks.begin(), blocks.end());
     }
-    scene.settings.listed_vertex_count = uint(vertices.size());
     scene.listed_vertices.resize(3 * vertices.size());
     for (const auto &[position, place] : vertices)
         std::copy(position.begin(), position.end(), &scene.listed_vertices[3 * place]);

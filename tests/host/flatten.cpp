@@ -140,9 +140,9 @@ TEST_CASE("tiny scenes share corners and need no tree", "[flatten]") {
     CHECK(scene.nodes.empty());
     CHECK_FALSE(scene.features["tree"]);
     CHECK(scene.listed_triangles == 12);
-    CHECK(scene.settings.listed_vertex_count == 8);
-    CHECK(scene.settings.listed_face_count == 6);
-    CHECK(scene.settings.inner_face_count == 0); // nothing is outside of a cube
+    CHECK(scene.settings.listed.vertices == 8);
+    CHECK(scene.settings.listed.faces == 6);
+    CHECK(scene.settings.listed_inside.faces == 0); // nothing is outside of a cube
     REQUIRE(scene.listed_faces.size() == 6);
     for (uint i = 0; i < 6; i++) {
         CHECK(triangles_of_face(scene, i).size() == 2);
@@ -273,7 +273,7 @@ TEST_CASE("the largest triangles are listed beside the tree, each triangle is in
     CHECK(scene.features["tree"]);
     REQUIRE(scene.listed_faces.size() == 1);
     CHECK(scene.listed_triangles == 2);
-    CHECK(scene.settings.inner_face_count == 0); // the grid is on one side of the floor
+    CHECK(scene.settings.listed_inside.faces == 0); // the grid is on one side of the floor
     CHECK(scene.listed_vertices.size() == 3 * 4);
     REQUIRE(triangles_of_face(scene, 0).size() == 2);
     for (uint place = 0; place < 2; place++)
@@ -292,7 +292,7 @@ TEST_CASE("the largest triangles are listed beside the tree, each triangle is in
     // Light below the floor makes it one that may block.
     SceneDescription lit = description;
     lit.point_lights.push_back({{0, 0, -1}, {1, 1, 1}, {}});
-    CHECK(flatten(lit, 8).settings.inner_face_count == 1);
+    CHECK(flatten(lit, 8).settings.listed_inside.faces == 1);
 }
 
 TEST_CASE("two triangles are one face only where they make a convex quadrilateral", "[flatten]") {
