@@ -27,29 +27,26 @@ static real safe_inverse(real d) { return 1 / (fabs(d) < R(1e-30) ? copysign((re
 typedef struct {
     real1 o[3][LANES], inverse[3][LANES], shear_x[LANES], shear_y[LANES], scale_z[LANES], tmin[LANES], tmax[LANES];
     int kz[LANES];
-    real1 entry[8][LANES];                // where the ray enters the root's children
-    uint met_low[LANES], met_high[LANES]; // those that it meets, a byte each: 0 to 3, 4 to 7
-    int walking[LANES], walks;            // the lanes that meet any, and how many these are
+    real1 entry[8][LANES];     // where the ray enters the root's children
+    uint met[LANES];           // those that it meets, a bit each
+    int walking[LANES], walks; // the lanes that meet any, and how many these are
 } LaneRays;
 
 // Tests the root's children against all lanes as intersect_children does for one.
 static void meet_root(LaneRays *rays, global const BvhNode *root, Ray ray, v3 inverse, mask live) {
-    uints low = (uints)(0), high = (uints)(0);
+    uints met = (uints)(0), bit = uints_pick(live, (uints)(1), (uints)(0));
     for (int i = 0; i < 8 && root->child[i] != OPAL_NONE; i++) {
         v3 lo = v3_of((real)(root->lo[0][i]), (real)(root->lo[1][i]), (real)(root->lo[2][i]));
         v3 hi = v3_of((real)(root->hi[0][i]), (real)(root->hi[1][i]), (real)(root->hi[2][i]));
         v3 a = v3_mul(v3_sub(lo, ray.o), inverse), b = v3_mul(v3_sub(hi, ray.o), inverse);
         real enter = real_max(real_max(real_min(a.x, b.x), real_min(a.y, b.y)), real_max(real_min(a.z, b.z), ray.tmin));
         real leave = real_min(real_min(real_max(a.x, b.x), real_max(a.y, b.y)), real_max(a.z, b.z)) * (1 + 8 * EPSILON);
-        mask met = live & (enter <= real_min(leave, ray.tmax));
-        uints byte = uints_pick(met, (uints)(1u << (8 * (i & 3))), (uints)(0));
-        if (i < 4) low = low | byte;
-        else high = high | byte;
+        met = met | uints_pick(enter <= real_min(leave, ray.tmax), bit, (uints)(0));
+        bit = bit + bit;
         STORE(enter, rays->entry[i]);
     }
-    STORE(low, rays->met_low);
-    STORE(high, rays->met_high);
-    rays->walks = list_lanes(to_mask((low | high) != 0u), rays->walking);
+    STORE(met, rays->met);
+    rays->walks = list_lanes(to_mask(met != 0u), rays->walking);
 }
 
 static void store_rays(LaneRays *rays, const Scene *scene, Ray ray, mask live) {
@@ -110,7 +107,7 @@ static void walk_closest(const Scene *scene, const LaneRays *rays, int lane, rea
     int top = 0;
     LaneRay ray = load_ray(rays, lane);
     global const uint *children = scene->nodes->child;
-    ulong met = upsample(rays->met_high[lane], rays->met_low[lane]);
+    ulong met = bytes_of_bits(rays->met[lane]);
     for (ulong m = met; m; m &= m - 1) entry[first_of(m)] = rays->entry[first_of(m)][lane];
     for (;;) {
         uint child;
@@ -175,7 +172,7 @@ static int walk_any(const Scene *scene, const LaneRays *rays, int lane) {
     int top = 0;
     LaneRay ray = load_ray(rays, lane);
     global const uint *children = scene->nodes->child;
-    ulong met = upsample(rays->met_high[lane], rays->met_low[lane]);
+    ulong met = bytes_of_bits(rays->met[lane]);
     for (;;) {
         uint child;
         if (met) { // on to the first one

@@ -44,7 +44,14 @@ typedef int8 mask8;
 #define GATHER(T, array, i, field) ((T)(AT(array, i, field)))
 #else
 #define WIDE(T) CAT(T, LANES)
-#define ANY(m) any(m)
+// By pairs of lanes in one word: PoCL's any() asks one lane after the other.
+#define HALF_4 2
+#define HALF_8 4
+#define HALF_16 8
+#define ANY_4(w) (((w).x | (w).y) != 0)
+#define ANY_8(w) ANY_4((w).lo | (w).hi)
+#define ANY_16(w) ANY_8((w).lo | (w).hi)
+#define ANY(m) CAT(ANY_, LANES)(CAT(as_ulong, CAT(HALF_, LANES))(to_ints(m)))
 #define STORE(v, array) CAT(vstore, LANES)(v, 0, array)
 #define LOAD(T, array) CAT(vload, LANES)(0, array)
 #define to_mask(condition) CAT(convert_, WIDE(MASK_NAME))(condition)
@@ -126,6 +133,9 @@ static real8 real8_max(real8 a, real8 b) { return a > b ? a : b; }
 
 // The true elements of a comparison of real8s, a byte each, lowest first: a set to walk through by first_of.
 static ulong bytes_of(mask8 truth) { return as_ulong(convert_char8(truth)) & 0x0101010101010101ul; }
+static ulong bytes_of_bits(uint eight) { // likewise, of eight bits
+    return (((eight * 0x0101010101010101ul & 0x8040201008040201ul) + 0x7f7f7f7f7f7f7f7ful) >> 7) & 0x0101010101010101ul;
+}
 static uint first_of(ulong bytes) { return (uint)(popcount(~bytes & (bytes - 1)) >> 3); } // CL 1.2 has no ctz
 
 // Asks for the cache line at p, a pointer to global char. PoCL's prefetch() does nothing; only a compiler for the CPU itself has the other.

@@ -54,6 +54,9 @@ static BlockTest intersect_block(global const TriangleBlock *block, const LaneRa
     test.distance = copysign((real8)(ray->scale_z), sum * ray->scale_z) * mul_add(a, az, mul_add(b, bz, c * cz));
     test.b = fabs(b);
     test.c = fabs(c);
-    test.hits = bytes_of(inside & (test.distance > ray->tmin * test.determinant) & (test.distance < ray->tmax * test.determinant));
+    // Misses are put at the far bound and one comparison decides: clang makes bytes of three by taking each mask apart, lane by lane.
+    real8 bound = ray->tmax * test.determinant;
+    real8 distance = test.distance > ray->tmin * test.determinant ? test.distance : bound;
+    test.hits = bytes_of((inside ? distance : bound) < bound);
     return test;
 }
