@@ -26,7 +26,7 @@ static real safe_inverse(real d) { return 1 / (fabs(d) < R(1e-30) ? copysign((re
 // All lanes' rays, laid out so that a loop can read one lane after the other.
 typedef struct {
     real1 o[3][LANES], inverse[3][LANES], shear_x[LANES], shear_y[LANES], scale_z[LANES], tmin[LANES], tmax[LANES];
-    int kz[LANES];
+    int near[3][LANES], kx[LANES], ky[LANES], kz[LANES]; // as in LaneRay
     real1 entry[8][LANES];     // where the ray enters the root's children
     uint met[LANES];           // those that it meets, a bit each
     int walking[LANES], walks; // the lanes that meet any, and how many these are
@@ -59,7 +59,12 @@ static void store_rays(LaneRays *rays, const Scene *scene, Ray ray, mask live) {
     STORE(s.shear_x, rays->shear_x); STORE(s.shear_y, rays->shear_y); STORE(s.scale_z, rays->scale_z);
     STORE(ray.tmin, rays->tmin); STORE(ray.tmax, rays->tmax);
     ints kz = to_ints(s.x) ? (ints)(0) : to_ints(s.y) ? (ints)(1) : (ints)(2);
-    STORE(kz, rays->kz);
+    ints kx = to_ints(s.x) ? (ints)(1) : to_ints(s.y) ? (ints)(2) : (ints)(0);
+    STORE(kx, rays->kx); STORE(3 - kx - kz, rays->ky); STORE(kz, rays->kz);
+    ints lower = (ints)(0), upper = (ints)(24); // rows of BvhNode::lo and BvhNode::hi
+    STORE(to_ints(inverse.x < 0) ? upper : lower, rays->near[0]);
+    STORE(to_ints(inverse.y < 0) ? upper + 8 : lower + 8, rays->near[1]);
+    STORE(to_ints(inverse.z < 0) ? upper + 16 : lower + 16, rays->near[2]);
 }
 
 static LaneRay load_ray(const LaneRays *rays, int lane) {
@@ -67,14 +72,14 @@ static LaneRay load_ray(const LaneRays *rays, int lane) {
     for (int axis = 0; axis < 3; axis++) {
         r.o[axis] = rays->o[axis][lane];
         r.inverse[axis] = rays->inverse[axis][lane];
-        r.near[axis] = r.inverse[axis] < 0 ? 24 + 8 * axis : 8 * axis;
+        r.widened[axis] = r.inverse[axis] * (1 + 8 * EPSILON);
+        r.near[axis] = (uint)rays->near[axis][lane];
         r.far[axis] = 24 + 16 * axis - r.near[axis];
     }
     r.shear_x = rays->shear_x[lane]; r.shear_y = rays->shear_y[lane]; r.scale_z = rays->scale_z[lane];
     r.tmin = rays->tmin[lane]; r.tmax = rays->tmax[lane];
-    r.kz = rays->kz[lane];
-    r.kx = r.kz == 2 ? 0 : r.kz + 1;
-    r.ky = r.kx == 2 ? 0 : r.kx + 1;
+    r.kx = (uint)rays->kx[lane]; r.ky = (uint)rays->ky[lane]; r.kz = (uint)rays->kz[lane];
+    r.sheared_o[0] = rays->o[r.kx][lane]; r.sheared_o[1] = rays->o[r.ky][lane]; r.sheared_o[2] = rays->o[r.kz][lane];
     return r;
 }
 
@@ -85,12 +90,11 @@ static ulong intersect_children(global const BvhNode *node, const LaneRay *ray, 
     real8 near_x = (load8(planes + ray->near[0]) - ray->o[0]) * ray->inverse[0];
     real8 near_y = (load8(planes + ray->near[1]) - ray->o[1]) * ray->inverse[1];
     real8 near_z = (load8(planes + ray->near[2]) - ray->o[2]) * ray->inverse[2];
-    real8 far_x = (load8(planes + ray->far[0]) - ray->o[0]) * ray->inverse[0];
-    real8 far_y = (load8(planes + ray->far[1]) - ray->o[1]) * ray->inverse[1];
-    real8 far_z = (load8(planes + ray->far[2]) - ray->o[2]) * ray->inverse[2];
+    real8 far_x = (load8(planes + ray->far[0]) - ray->o[0]) * ray->widened[0];
+    real8 far_y = (load8(planes + ray->far[1]) - ray->o[1]) * ray->widened[1];
+    real8 far_z = (load8(planes + ray->far[2]) - ray->o[2]) * ray->widened[2];
     *entry = real8_max(real8_max(near_x, near_y), real8_max(near_z, (real8)(ray->tmin)));
-    real8 leave = real8_min(real8_min(far_x, far_y), far_z) * (1 + 8 * EPSILON);
-    return bytes_of(*entry <= real8_min(leave, (real8)(ray->tmax)));
+    return bytes_of(*entry <= real8_min(real8_min(far_x, far_y), real8_min(far_z, (real8)(ray->tmax))));
 }
 
 // Asks for the memory of a child that is put on the stack.
@@ -103,22 +107,23 @@ static void fetch_child(const Scene *scene, uint child) {
 // Nearest hit of lane `lane` before its tmax; leaves the outputs as they are where there is none.
 static void walk_closest(const Scene *scene, const LaneRays *rays, int lane, real1 *t_out, real1 *u_out, real1 *v_out, uint *slot_out) {
     uint stack[OPAL_STACK];
-    real1 entries[OPAL_STACK], entry[8];
+    real1 entries[OPAL_STACK], own[8];
     int top = 0;
     LaneRay ray = load_ray(rays, lane);
+    const real1 *entry = rays->entry[0] + lane; // where the ray enters the children, one each `stride`
+    uint stride = LANES;
     global const uint *children = scene->nodes->child;
     ulong met = bytes_of_bits(rays->met[lane]);
-    for (ulong m = met; m; m &= m - 1) entry[first_of(m)] = rays->entry[first_of(m)][lane];
     for (;;) {
         uint child;
         if (met) {
             // On to the nearest child that is met; the others wait on the stack.
             uint i = first_of(met);
-            real1 nearest = entry[i];
+            real1 nearest = entry[i * stride];
             child = children[i];
             for (met &= met - 1; met; met &= met - 1) {
                 i = first_of(met);
-                real1 e = entry[i];
+                real1 e = entry[i * stride];
                 uint other = children[i];
                 int nearer = e < nearest;
                 entries[top] = nearer ? nearest : e;
@@ -160,7 +165,9 @@ static void walk_closest(const Scene *scene, const LaneRays *rays, int lane, rea
             global const BvhNode *node = scene->nodes + child;
             real8 enter;
             met = intersect_children(node, &ray, &enter);
-            vstore8(enter, 0, entry);
+            vstore8(enter, 0, own);
+            entry = own;
+            stride = 1;
             children = node->child;
         }
     }

@@ -21,11 +21,12 @@ static real lanes_edge(real ax, real ay, real bx, real by) {
 
 // One ray as the tree walk needs it.
 typedef struct {
-    real1 o[3];            // origin
+    real1 o[3];                           // origin
+    real1 inverse[3], widened[3];         // 1 / d, finite; the same times what the rounding of a box test may be
+    uint near[3], far[3];                 // where a node has the planes of its children that the ray meets first, and last
+    uint kx, ky, kz;                      // axes: kz is the largest of d
+    real1 sheared_o[3];                   // o[kx], o[ky], o[kz]
     real1 shear_x, shear_y, scale_z;
-    int kx, ky, kz;        // axes: kz is the largest of d
-    real1 inverse[3];      // 1 / d, finite
-    int near[3], far[3];   // where a node has the planes of its children that the ray meets first, and last
     real1 tmin, tmax;
 } LaneRay;
 
@@ -40,7 +41,7 @@ static BlockTest intersect_block(global const TriangleBlock *block, const LaneRa
     global const float *x = block->vertex[0][0] + 8 * ray->kx;
     global const float *y = block->vertex[0][0] + 8 * ray->ky;
     global const float *z = block->vertex[0][0] + 8 * ray->kz;
-    real1 ox = ray->o[ray->kx], oy = ray->o[ray->ky], oz = ray->o[ray->kz];
+    real1 ox = ray->sheared_o[0], oy = ray->sheared_o[1], oz = ray->sheared_o[2];
     real8 az = load8(z) - oz, bz = load8(z + 24) - oz, cz = load8(z + 48) - oz;
     real8 ax = mul_add(-ray->shear_x, az, load8(x) - ox), ay = mul_add(-ray->shear_y, az, load8(y) - oy);
     real8 bx = mul_add(-ray->shear_x, bz, load8(x + 24) - ox), by = mul_add(-ray->shear_y, bz, load8(y + 24) - oy);
