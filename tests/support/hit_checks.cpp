@@ -243,6 +243,35 @@ Finding no_leaks(const std::string &what, const TriangleMesh &mesh, int lanes, c
     return exact(what + " at " + std::to_string(lanes) + " lanes: " + std::to_string(leaks) + " of 40000 rays leak", leaks == 0);
 }
 
+// Inside a cube along its walls, from as far off them as rays start (surface.cl) and as good as in parallel: something must be hit, and not
+// beyond the cube.
+Finding along_walls(int lanes, const Sources &sources, unsigned seed) {
+    const FlatScene flat = flatten(scene_of({diffuse(cube({}, 1))}), lanes);
+    double half = 0;
+    for (const Slot &slot : triangles_of(flat))
+        half = std::max(half, slot.p[0].x);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    std::vector<HostRay> rays;
+    for (size_t i = 0; i < 40000; i++) {
+        const double wall = (i % 2 ? 1 : -1) * half * (1 - 0x1p-24 * double(24 + random() % 8)), slope = 0x1p-24 * (double(random() % 15) - 7);
+        const double a = half * uniform(random), b = half * uniform(random), u = uniform(random), v = i % 5 ? uniform(random) : 0;
+        const size_t axis = random() % 3;
+        const Vec3 from[] = {{wall, a, b}, {b, wall, a}, {a, b, wall}}, to[] = {{slope, u, v}, {v, slope, u}, {u, v, slope}};
+        rays.push_back({from[axis], to[axis], 0, 1e30});
+    }
+    const Planes found = probe_of(flat, lanes, sources).trace(planes_of_rays(rays));
+    size_t wrong = 0;
+    for (size_t i = 0; i < rays.size(); i++) {
+        double exit = INFINITY; // the slopes cannot leave the cube by more than the slack below
+        for (const auto &[o, d] : {std::pair{rays[i].o.x, rays[i].d.x}, {rays[i].o.y, rays[i].d.y}, {rays[i].o.z, rays[i].d.z}})
+            if (std::abs(d) > 1e-5)
+                exit = std::min(exit, ((d > 0 ? half : -half) - o) / d);
+        wrong += found.bits(HIT_SLOT, i) == OPAL_NONE || found.at(HIT_ANY, i) == 0 || !(found.at(HIT_T, i) <= exit * (1 + doubt) + doubt);
+    }
+    return exact("a cube at " + std::to_string(lanes) + " lanes: " + std::to_string(wrong) + " of 40000 rays along its walls end nowhere, or outside", wrong == 0);
+}
+
 } // namespace
 
 Findings check_tree(const Sources &sources, unsigned seed) {
@@ -267,6 +296,8 @@ Findings check_watertight(const Sources &sources, unsigned seed) {
     for (int lanes : tested_lanes())
         for (const auto &[what, mesh] : {std::pair{"a ball", ball(20, 31)}, {"a cube", cube({}, 1)}, {"a crystal", ball(3, 7)}, {"a drum", drum(30, 24)}})
             findings.push_back(no_leaks(what, mesh, lanes, sources, seed));
+    for (int lanes : tested_lanes())
+        findings.push_back(along_walls(lanes, sources, seed));
     return findings;
 }
 
