@@ -234,40 +234,42 @@ static void view_listed(const Scene *scene, Ray ray, uint count, ListedView *vie
     }
 }
 
-// A face in that view: inside, and the signed sums that give t = distance / determinant, b / determinant, c / determinant, with b and c as
-// ListedFace has them.
-typedef struct { real b, c, determinant, distance; mask inside; } FaceTest;
+// A face in that view: inside, and the signed sums that give t = distance / determinant and the barycentric weights b / determinant of B,
+// c / determinant of C in the triangle that is hit, A B C or `beyond` B C, D C B.
+typedef struct { real b, c, determinant, distance; mask inside, beyond; } FaceTest;
 
 static FaceTest face_test(const ListedView *view, global const ListedFace *face) {
     uint i = face->corner[0], j = face->corner[1], k = face->corner[2], l = face->corner[3];
-    real c = lanes_edge(view->x[i], view->y[i], view->x[j], view->y[j]);
-    real b = lanes_edge(view->x[k], view->y[k], view->x[i], view->y[i]);
-    real to_far = lanes_edge(view->x[j], view->y[j], view->x[l], view->y[l]);
-    real from_far = lanes_edge(view->x[l], view->y[l], view->x[k], view->y[k]);
-    mask inside = real_min(real_min(b, c), real_min(to_far, from_far)) >= 0 | real_max(real_max(b, c), real_max(to_far, from_far)) <= 0;
-    real a = lanes_edge(view->x[j], view->y[j], view->x[k], view->y[k]), determinant = a + b + c;
-    real distance = mul_add(a, view->z[i], mul_add(b, view->z[j], c * view->z[k]));
-    // One sign for both: then ratios compare by products, without a division a face.
-    real sign = copysign((real)(1), determinant);
-    FaceTest test = {sign * b, sign * c, fabs(determinant), sign * distance, inside};
+    real ab = lanes_edge(view->x[i], view->y[i], view->x[j], view->y[j]);
+    real bd = lanes_edge(view->x[j], view->y[j], view->x[l], view->y[l]);
+    real dc = lanes_edge(view->x[l], view->y[l], view->x[k], view->y[k]);
+    real ca = lanes_edge(view->x[k], view->y[k], view->x[i], view->y[i]);
+    real bc = lanes_edge(view->x[j], view->y[j], view->x[k], view->y[k]);
+    mask inside = real_min(real_min(ab, ca), real_min(bd, dc)) >= 0 | real_max(real_max(ab, ca), real_max(bd, dc)) <= 0;
+    // One sign for all: then ratios compare by products, without a division a face.
+    real sign = copysign((real)(1), ab + bd + dc + ca);
+    mask beyond = bc * sign < 0;
+    real a = fabs(bc), b = sign * (beyond ? dc : ca), c = sign * (beyond ? bd : ab);
+    FaceTest test = {b, c, a + (b + c), mul_add(a, beyond ? view->z[l] : view->z[i], mul_add(b, view->z[j], c * view->z[k])), inside, beyond};
     return test;
 }
 
 // The nearest of the listed faces so far, as FaceTest has it.
-typedef struct { real distance, determinant, b, c; uints face; } NearestFace;
+typedef struct { real distance, determinant, b, c; uints triangle; } NearestFace; // triangle: 2 i, or 2 i + 1 for D C B of face i
 
-static void prefer(NearestFace *best, mask candidate, real distance, real determinant, real b, real c, uints face) {
+static void prefer(NearestFace *best, mask candidate, real distance, real determinant, real b, real c, uints triangle) {
     mask nearer = candidate & (distance * best->determinant < best->distance * determinant);
     best->distance = nearer ? distance : best->distance;
     best->determinant = nearer ? determinant : best->determinant;
     best->b = nearer ? b : best->b;
     best->c = nearer ? c : best->c;
-    best->face = uints_pick(nearer, face, best->face);
+    best->triangle = uints_pick(nearer, triangle, best->triangle);
 }
 
 static void try_face(const Scene *scene, const ListedView *view, Ray ray, uint i, NearestFace *best) {
     FaceTest test = face_test(view, scene->listed_faces + i);
-    prefer(best, test.inside & (test.distance > ray.tmin * test.determinant), test.distance, test.determinant, test.b, test.c, (uints)(i));
+    prefer(best, test.inside & (test.distance > ray.tmin * test.determinant), test.distance, test.determinant, test.b, test.c,
+           uints_pick(test.beyond, (uints)(2 * i + 1), (uints)(2 * i)));
 }
 
 // Two halves are searched side by side: one comparison waits for the one before.
@@ -281,20 +283,11 @@ static Hit listed_closest(const Scene *scene, Ray ray, mask live) {
         try_face(scene, &view, ray, i + 1, &other);
     }
     if (i < count) try_face(scene, &view, ray, i, &best);
-    prefer(&best, ALL_LANES, other.distance, other.determinant, other.b, other.c, other.face);
+    prefer(&best, ALL_LANES, other.distance, other.determinant, other.b, other.c, other.triangle);
     real reciprocal = 1 / best.determinant, b = best.b * reciprocal, c = best.c * reciprocal;
-    mask found = to_mask(best.face != OPAL_NONE), beyond = found & (b + c > 1);
-    uints slot = scene->settings->listed_slot + best.face * 2u;
-    if (ANY(beyond)) { // in the second triangle, D C B
-        uints face = uints_pick(beyond, best.face, (uints)(0));
-        real far_b = GATHER(real, scene->listed_faces, face, .far[0]), far_c = GATHER(real, scene->listed_faces, face, .far[1]);
-        beyond = beyond & (far_b > 0);
-        real d = (b + c - 1) / (far_b + far_c - 1), weight_b = b - d * far_b;
-        b = beyond ? c - d * far_c : b;
-        c = beyond ? weight_b : c;
-        slot = uints_pick(beyond, slot + 1u, slot);
-    }
-    Hit hit = {best.distance * reciprocal, b, c, uints_pick(found, slot, (uints)(OPAL_NONE))};
+    mask found = to_mask(best.triangle != OPAL_NONE), beyond = found & to_mask((best.triangle & 1u) != 0u);
+    Hit hit = {best.distance * reciprocal, beyond ? c : b, beyond ? b : c,
+               uints_pick(found, scene->settings->listed_slot + best.triangle, (uints)(OPAL_NONE))};
     return hit;
 }
 

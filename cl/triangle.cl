@@ -50,7 +50,7 @@ static BlockTest intersect_block(global const TriangleBlock *block, const LaneRa
     mask8 inside = real8_min(a, real8_min(b, c)) >= 0 | real8_max(a, real8_max(b, c)) <= 0;
 
     BlockTest test;
-    real8 sum = a + b + c;
+    real8 sum = a + (b + c); // as face_test adds them, whichever corner comes first
     test.determinant = fabs(sum);
     test.distance = copysign((real8)(ray->scale_z), sum * ray->scale_z) * mul_add(a, az, mul_add(b, bz, c * cz));
     test.b = fabs(b);

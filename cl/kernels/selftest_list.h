@@ -11,7 +11,7 @@
     RECORD(BvhNode) RECORD(TriangleBlock) RECORD(Triangle) RECORD(ListedFace) RECORD(FaceRange) RECORD(MeshRecord) RECORD(Settings) \
     RECORD(BsdfRecord) RECORD(EmitterRecord) RECORD(LightTriangle)
 #define OPAL_MEMBERS(MEMBER) \
-    MEMBER(BvhNode, hi) MEMBER(BvhNode, child) MEMBER(TriangleBlock, id) MEMBER(Triangle, mesh) MEMBER(ListedFace, far) \
+    MEMBER(BvhNode, hi) MEMBER(BvhNode, child) MEMBER(TriangleBlock, id) MEMBER(Triangle, mesh) MEMBER(ListedFace, corner) \
     MEMBER(MeshRecord, emitter) MEMBER(Settings, camera_forward) MEMBER(Settings, far_clip) MEMBER(Settings, listed_slot) \
     MEMBER(Settings, rr_prob) MEMBER(Settings, light_energy) MEMBER(Settings, filter_c) MEMBER(Settings, choices) \
     MEMBER(BsdfRecord, u.diffuse.use_cosine) MEMBER(BsdfRecord, u.dielectric.ext_ior) MEMBER(BsdfRecord, u.microfacet.kd) \

@@ -41,13 +41,11 @@ typedef struct {
 OPAL_SIZE_CHECK(Triangle, 16);
 
 // A listed face, which is tested against all lanes at once: a triangle A B C, or a convex quadrilateral A B D C that stands for the
-// triangles A B C and D C B. Face i has the slots listed_slot + 2 i and, for D C B, the next one. A point of its plane is
-// A + b (B - A) + c (C - A).
+// triangles A B C and D C B. Face i has the slots listed_slot + 2 i and, for D C B, the next one.
 typedef struct {
     uint corner[4];  // A, B, C, and D or B again: indices into the listed vertices
-    float far[2];    // b and c of D; 0 and 0 for a triangle
 } ListedFace;
-OPAL_SIZE_CHECK(ListedFace, 24);
+OPAL_SIZE_CHECK(ListedFace, 16);
 
 // The first so many listed faces, and the vertices that they need.
 typedef struct {

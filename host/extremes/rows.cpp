@@ -194,7 +194,7 @@ const std::vector<Row> &rows() {
         {.name = "detail", .stretched = "size of what is looked at, the world having 1", .values = reversed(decades(-6, -1)), .start = 0.1,
          .promised_from = 1e-3, .promised_to = 0.1, .picture = as_detail(room), .invariant = true, .closed = as_detail(closed_walls)},
         {.name = "aspect", .stretched = "aspect of the triangles of closed walls", .values = decades(0, 7), .start = 1, .promised_from = 1,
-         .promised_to = 1e4, .picture = slivered_room, .invariant = true, .closed = slivered_walls},
+         .promised_to = 1e3, .picture = slivered_room, .invariant = true, .closed = slivered_walls},
         {.name = "specks", .stretched = "area of triangles in the middle of those of closed walls, of theirs", .values = reversed(decades(-12, 0)),
          .start = 1, .promised_from = 1e-12, .promised_to = 1, .picture = speckled_room, .invariant = true, .closed = speckled_walls},
         {.name = "copies", .stretched = "coplanar copies of every wall, each cut along the other diagonal", .values = {1, 2, 3, 10, 30}, .start = 1,

@@ -42,9 +42,9 @@ Vec3 vec3(const Point &p) { return {p[0], p[1], p[2]}; }
 // What rounding may move a coordinate by that is at most 1, a few times over.
 constexpr double ROUNDING = 0x1p-22;
 
-// Makes d the fourth corner of the face a b c, if it is one: in its plane up to rounding, no corner straight or nearly so, both triangles much
-// wider than rounding, and the second not larger than the first, from which the device extrapolates.
-bool add_corner(const Point &a, const Point &b, const Point &c, const Point &d, Face &face) {
+// Are a b c and d c b a convex quadrilateral? With d in the plane up to rounding, no corner straight or nearly so, and both triangles much wider than
+// rounding.
+bool is_quadrilateral(const Point &a, const Point &b, const Point &c, const Point &d) {
     const Vec3 to_b = vec3(b) - vec3(a), to_c = vec3(c) - vec3(a), to_d = vec3(d) - vec3(a), n = cross(to_b, to_c);
     double largest = 0, longest2 = 0;
     for (const Point *p : {&a, &b, &c, &d})
@@ -53,14 +53,10 @@ bool add_corner(const Point &a, const Point &b, const Point &c, const Point &d, 
     for (Vec3 side : {to_b, to_c, to_d, to_c - to_b, to_d - to_b, to_d - to_c})
         longest2 = std::max(longest2, dot(side, side));
     const double n2 = dot(n, n);
-    const auto [far_b, far_c] = std::pair{dot(cross(to_d, to_c), n) / n2, dot(cross(to_b, to_d), n) / n2};
-    const double ratio = far_b + far_c - 1; // of the areas
-    if (std::abs(dot(to_d, n)) > ROUNDING * largest * std::sqrt(n2) || std::min(far_b, far_c) < 0x1p-10 || ratio > 1.001 ||
-        ratio * std::sqrt(n2 / longest2) < 1024 * ROUNDING * largest)
-        return false;
-    face.far[0] = far_b;
-    face.far[1] = far_c;
-    return true;
+    const double far_b = dot(cross(to_d, to_c), n) / n2, far_c = dot(cross(to_b, to_d), n) / n2; // d = a + far_b to_b + far_c to_c
+    const double ratio = far_b + far_c - 1;                                                     // of the areas
+    return std::abs(dot(to_d, n)) <= ROUNDING * largest * std::sqrt(n2) && std::min(far_b, far_c) >= 0x1p-10 &&
+           std::min(ratio, 1.0) * std::sqrt(n2 / longest2) >= 1024 * ROUNDING * largest;
 }
 
 template <class T> void turn(T &corners, int by) { std::rotate(corners, corners + by, corners + 3); }
@@ -69,19 +65,17 @@ void turn(std::array<uint, 3> &corners, int by) { std::rotate(corners.begin(), c
 // The face of two triangles that make one, turned to A B C and D C B; else of the first alone.
 Face make_face(uint first, uint second, TriangleSoup &soup, std::vector<Triangle> &triangles) {
     const auto corner = [&](uint id, int i) { return soup.vertices[soup.corners[id][size_t(i % 3)]]; };
-    Face face{first, second, {}};
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             if (corner(first, i + 1) == corner(second, j + 2) && corner(first, i + 2) == corner(second, j + 1) &&
-                add_corner(corner(first, i), corner(first, i + 1), corner(first, i + 2), corner(second, j), face)) {
+                is_quadrilateral(corner(first, i), corner(first, i + 1), corner(first, i + 2), corner(second, j))) {
                 turn(soup.corners[first], i);
                 turn(triangles[first].normal, i);
                 turn(soup.corners[second], j);
                 turn(triangles[second].normal, j);
-                return face;
+                return {first, second};
             }
-    face.second = OPAL_NONE;
-    return face;
+    return {first, OPAL_NONE};
 }
 
 // Does the plane of a b c have points of the scene on both sides?
@@ -145,14 +139,10 @@ std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, std:
     std::vector<Face> faces;
     std::vector<uint> left = ids;
     while (!left.empty()) {
-        Face face{left.front(), OPAL_NONE, {}};
+        Face face{left.front(), OPAL_NONE};
         for (size_t i = 1; i < left.size() && face.second == OPAL_NONE; i++) {
             face = make_face(left.front(), left[i], soup, triangles);
-            if (face.second == OPAL_NONE) // the other may be the larger one
-                face = make_face(left[i], left.front(), soup, triangles);
-            if (face.second == OPAL_NONE)
-                face.first = left.front();
-            else
+            if (face.second != OPAL_NONE)
                 left.erase(left.begin() + std::ptrdiff_t(i));
         }
         left.erase(left.begin());
@@ -190,7 +180,7 @@ void list_faces(const TriangleSoup &soup, std::vector<Face> listed, const std::v
     for (const Face &face : listed) {
         const bool pair = face.second != OPAL_NONE;
         const uint a = at(face.first, 0), b = at(face.first, 1), c = at(face.first, 2);
-        scene.listed_faces.push_back({{a, b, c, pair ? at(face.second, 0) : b}, {float(face.far[0]), float(face.far[1])}});
+        scene.listed_faces.push_back({{a, b, c, pair ? at(face.second, 0) : b}});
         scene.listed_triangles += pair ? 2 : 1;
         shapes.insert(shapes.end(), {face.first, pair ? face.second : face.first});
         ids.insert(ids.end(), {face.first, face.second});

@@ -13,10 +13,8 @@ std::vector<uint> choose_listed(const TriangleSoup &soup);
 constexpr double LISTED_SHARE = 0.05;
 
 // A triangle A B C and, where both make a convex quadrilateral A B D C, a second one D C B: their ids, OPAL_NONE for no second one.
-// D = A + far[0] (B - A) + far[1] (C - A).
 struct Face {
     uint first, second;
-    double far[2];
 };
 
 // Finds the quadrilaterals among `ids`. Turns their triangles' corners, in `soup` and in `triangles`, so that they begin at A and at D.

@@ -30,12 +30,12 @@ const std::vector<Control> hits = {
     {{"back faces culled", "triangle.cl", " | real8_max(a, real8_max(b, c)) <= 0", ""}, "tree", check_tree},
     {{"last hit instead of nearest", "bvh.cl", "candidate & (distance * best->determinant < best->distance * determinant)", "candidate & (distance < R(1e30) * determinant)"}, "tiny", check_tiny},
     {{"barycentric weights swapped", "bvh.cl", "b = best.b * reciprocal, c = best.c * reciprocal;", "b = best.c * reciprocal, c = best.b * reciprocal;"}, "tiny", check_tiny},
-    {{"a quadrilateral's second triangle taken for its first", "bvh.cl", "beyond = beyond & (far_b > 0);", "beyond = NO_LANES;"}, "tiny", check_tiny},
-    {{"no quadrilateral but parallelograms", "bvh.cl", "real d = (b + c - 1) / (far_b + far_c - 1)", "real d = b + c - 1"}, "tiny", check_tiny},
+    {{"a quadrilateral's second triangle taken for its first", "bvh.cl", "mask beyond = bc * sign < 0;", "mask beyond = NO_LANES;"}, "tiny", check_tiny},
+    {{"a quadrilateral's second triangle with the weights of the first", "bvh.cl", "beyond ? c : b, beyond ? b : c,", "b, c,"}, "tiny", check_tiny},
     {{"far bound ignored by any-hit", "bvh.cl", " & (test.distance < ray.tmax * test.determinant));", ");"}, "tiny", check_tiny},
     {{"edges belong to no triangle", "triangle.cl", "real8_min(a, real8_min(b, c)) >= 0 | real8_max(a, real8_max(b, c)) <= 0", "real8_min(a, real8_min(b, c)) > 0 | real8_max(a, real8_max(b, c)) < 0"},
      "watertight", check_watertight},
-    {{"boxes a little small", "bvh.cl", "real8_min(real8_min(far_x, far_y), far_z) * (1 + 8 * EPSILON)", "real8_min(real8_min(far_x, far_y), far_z) * (1 - 1000 * EPSILON)"}, "watertight", check_watertight},
+    {{"boxes a little small", "bvh.cl", "r.widened[axis] = r.inverse[axis] * (1 + 8 * EPSILON)", "r.widened[axis] = r.inverse[axis] * (1 - 1000 * EPSILON)"}, "watertight", check_watertight},
 };
 
 const std::vector<Control> densities = {

@@ -110,12 +110,12 @@ TEST_CASE("What makes single precision walk other paths is seen", "[double]") {
         return;
     const Mutant jump{"frames that jump on upright walls", "math.cl", "n.z < FRAME_JUMP ? (real)(-1) : (real)(1)", "copysign((real)(1), n.z)"};
     const Sources wrong = mutated(Sources::embedded(), jump);
-    // Walls whose normals have z = 0 but for the last bit
+    // Walls whose normals have z = 0 but for the last bit: turned and slanted, so that it is a difference of products
     SceneDescription scene = gallery(32, 24);
     const Transform turned = Transform::rotate({0, 0, 1}, 34);
     for (Mesh &mesh : scene.meshes)
         if (auto *p = std::get_if<Parallelogram>(&mesh.shape))
-            *p = {turned.point(p->origin), turned.vector(p->u), turned.vector(p->v)};
+            *p = {turned.point(p->origin), turned.vector(p->u), turned.vector(p->v + p->u * 0.37)};
     const double right = share_off(samples_of(scene, MathMode::precise), samples_of(scene, MathMode::double_precision), 1e-3);
     const double mutant = share_off(samples_of(scene, MathMode::precise, 0, wrong), samples_of(scene, MathMode::double_precision, 0, wrong), 1e-3);
     INFO(right << " of the samples off, " << mutant << " with the mutant");
