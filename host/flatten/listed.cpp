@@ -6,9 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
-#include <numeric>
 #include <set>
 
 namespace opal {
@@ -59,8 +57,7 @@ bool is_quadrilateral(const Point &a, const Point &b, const Point &c, const Poin
            std::min(ratio, 1.0) * std::sqrt(n2 / longest2) >= 1024 * ROUNDING * largest;
 }
 
-template <class T> void turn(T &corners, int by) { std::rotate(corners, corners + by, corners + 3); }
-void turn(std::array<uint, 3> &corners, int by) { std::rotate(corners.begin(), corners.begin() + by, corners.end()); }
+template <class Corners> void turn(Corners &corners, int by) { std::rotate(std::begin(corners), std::begin(corners) + by, std::end(corners)); }
 
 // The face of two triangles that make one, turned to A B C and D C B; else of the first alone.
 Face make_face(uint first, uint second, TriangleSoup &soup, std::vector<Triangle> &triangles) {
