@@ -1,7 +1,7 @@
 // bvh: closest and any hit of each lane. The largest faces of a scene, or all of a tiny one, are listed: each is tested against
 // all lanes at once. The other triangles are in a tree. Its root's children are tested against all lanes at once, too; a lane that
-// meets some walks on alone, with the eight children or triangles of a node in one vector.
-// A walk's stack holds OPAL_STACK entries: flatten builds trees that never need more.
+// meets some walks on alone, with the eight children or triangles of a node in one vector. Two lanes are walked in turn: while one waits
+// for memory or for a comparison's end, the other goes on.
 
 // The axis of the largest component of d, and with it the shear of triangle.cl.
 typedef struct {
@@ -9,51 +9,71 @@ typedef struct {
     real shear_x, shear_y, scale_z; // d[kx] / d[kz], d[ky] / d[kz], 1 / d[kz], with kx = kz + 1, ky = kz + 2 mod 3
 } Shear;
 
-static Shear shear_of(v3 d) {
+static Shear shear_with(v3 d, v3 inverse) {
     v3 a = v3_abs(d);
     Shear s;
     s.x = a.x > a.y & a.x > a.z;
     s.y = (a.y > a.z) & (a.y >= a.x);
-    s.scale_z = 1 / (s.x ? d.x : s.y ? d.y : d.z);
+    s.scale_z = s.x ? inverse.x : s.y ? inverse.y : inverse.z;
     s.shear_x = (s.x ? d.y : s.y ? d.z : d.x) * s.scale_z;
     s.shear_y = (s.x ? d.z : s.y ? d.x : d.y) * s.scale_z;
     return s;
 }
 
+// Without 1 / d at hand: only the largest component's is asked for.
+static Shear shear_of(v3 d) {
+    Shear s = shear_with(d, d);
+    return shear_with(d, v3_all(1 / s.scale_z));
+}
+
 // 1/d, finite also for zeros, whose sign is kept: a box test then never meets 0 * inf.
 static real safe_inverse(real d) { return 1 / (fabs(d) < R(1e-30) ? copysign((real)(R(1e-30)), d) : d); }
+
+// A key says which child of its node a ray meets, and orders children by where it enters them: that distance's bits, which compare
+// as the (positive) distance does, with the child's place in the last three.
+#define KEYS_PLACE 7
+
+static key1 least(mask8 keys) {
+    half_keys four = min(keys.lo, keys.hi);
+    quarter_keys two = min(four.lo, four.hi);
+    return min(two.x, two.y);
+}
 
 // All lanes' rays, laid out so that a loop can read one lane after the other.
 typedef struct {
     real1 o[3][LANES], inverse[3][LANES], shear_x[LANES], shear_y[LANES], scale_z[LANES], tmin[LANES], tmax[LANES];
     int near[3][LANES], kx[LANES], ky[LANES], kz[LANES]; // as in LaneRay
-    real1 entry[8][LANES];     // where the ray enters the root's children
-    uint met[LANES];           // those that it meets, a bit each
-    int walking[LANES], walks; // the lanes that meet any, and how many these are
+    key1 keys[8][LANES], nearest[LANES]; // of the root's children; the least of them
+    int walking[LANES], walks;           // the lanes that meet any, and how many these are
 } LaneRays;
 
 // Tests the root's children against all lanes as intersect_children does for one.
 static void meet_root(LaneRays *rays, global const BvhNode *root, Ray ray, v3 inverse, mask live) {
-    uints met = (uints)(0), bit = uints_pick(live, (uints)(1), (uints)(0));
-    for (int i = 0; i < 8 && root->child[i] != OPAL_NONE; i++) {
+    lane_keys none = NO_KEY, nearest = none;
+    for (int i = 0; i < 8; i++) {
+        if (root->child[i] == OPAL_NONE) {
+            STORE(none, rays->keys[i]);
+            continue;
+        }
         v3 lo = v3_of((real)(root->lo[0][i]), (real)(root->lo[1][i]), (real)(root->lo[2][i]));
         v3 hi = v3_of((real)(root->hi[0][i]), (real)(root->hi[1][i]), (real)(root->hi[2][i]));
         v3 a = v3_mul(v3_sub(lo, ray.o), inverse), b = v3_mul(v3_sub(hi, ray.o), inverse);
         real enter = real_max(real_max(real_min(a.x, b.x), real_min(a.y, b.y)), real_max(real_min(a.z, b.z), ray.tmin));
         real leave = real_min(real_min(real_max(a.x, b.x), real_max(a.y, b.y)), real_max(a.z, b.z)) * (1 + 8 * EPSILON);
-        met = met | uints_pick(enter <= real_min(leave, ray.tmax), bit, (uints)(0));
-        bit = bit + bit;
-        STORE(enter, rays->entry[i]);
+        mask meets = live & (enter <= real_min(leave, ray.tmax));
+        lane_keys key = meets ? (real_bits(enter) & ~KEYS_PLACE) | i : none;
+        nearest = min(nearest, key);
+        STORE(key, rays->keys[i]);
     }
-    STORE(met, rays->met);
-    rays->walks = list_lanes(to_mask(met != 0u), rays->walking);
+    STORE(nearest, rays->nearest);
+    rays->walks = list_lanes(nearest < none, rays->walking);
 }
 
 static void store_rays(LaneRays *rays, const Scene *scene, Ray ray, mask live) {
     v3 inverse = v3_of(safe_inverse(ray.d.x), safe_inverse(ray.d.y), safe_inverse(ray.d.z));
     meet_root(rays, scene->nodes, ray, inverse, live);
     if (rays->walks == 0) return;
-    Shear s = shear_of(ray.d);
+    Shear s = shear_with(ray.d, inverse);
     STORE(ray.o.x, rays->o[0]); STORE(ray.o.y, rays->o[1]); STORE(ray.o.z, rays->o[2]);
     STORE(inverse.x, rays->inverse[0]); STORE(inverse.y, rays->inverse[1]); STORE(inverse.z, rays->inverse[2]);
     STORE(s.shear_x, rays->shear_x); STORE(s.shear_y, rays->shear_y); STORE(s.scale_z, rays->scale_z);
@@ -83,9 +103,9 @@ static LaneRay load_ray(const LaneRays *rays, int lane) {
     return r;
 }
 
-// The children whose boxes the ray meets, a byte each, and where it enters them. (plane - o) / d loses nothing that
+// Which children's boxes the ray meets, and where it enters them. (plane - o) / d loses nothing that
 // matters, and the far side is widened by its error bound, so that no box misses a triangle inside it (Ize 2013).
-static ulong intersect_children(global const BvhNode *node, const LaneRay *ray, real8 *entry) {
+static mask8 intersect_children(global const BvhNode *node, const LaneRay *ray, real8 *entry) {
     global const float *planes = node->lo[0]; // and after it node->hi
     real8 near_x = (load8(planes + ray->near[0]) - ray->o[0]) * ray->inverse[0];
     real8 near_y = (load8(planes + ray->near[1]) - ray->o[1]) * ray->inverse[1];
@@ -94,115 +114,190 @@ static ulong intersect_children(global const BvhNode *node, const LaneRay *ray, 
     real8 far_y = (load8(planes + ray->far[1]) - ray->o[1]) * ray->widened[1];
     real8 far_z = (load8(planes + ray->far[2]) - ray->o[2]) * ray->widened[2];
     *entry = real8_max(real8_max(near_x, near_y), real8_max(near_z, (real8)(ray->tmin)));
-    return bytes_of(*entry <= real8_min(real8_min(far_x, far_y), real8_min(far_z, (real8)(ray->tmax))));
+    return *entry <= real8_min(real8_min(far_x, far_y), real8_min(far_z, (real8)(ray->tmax)));
 }
 
-// Asks for the memory of a child that is put on the stack.
+// Asks for the memory of a child that waits.
 static void fetch_child(const Scene *scene, uint child) {
     global const char *at = child & OPAL_LEAF ? (global const char *)(scene->blocks + (child & ~OPAL_LEAF))
                                               : (global const char *)(scene->nodes + child);
     FETCH(at); FETCH(at + 64); FETCH(at + 128); FETCH(at + 192); FETCH(at + 256);
 }
 
-// Nearest hit of lane `lane` before its tmax; leaves the outputs as they are where there is none.
-static void walk_closest(const Scene *scene, const LaneRays *rays, int lane, real1 *t_out, real1 *u_out, real1 *v_out, uint *slot_out) {
-    uint stack[OPAL_STACK];
-    real1 entries[OPAL_STACK], own[8];
-    int top = 0;
-    LaneRay ray = load_ray(rays, lane);
-    const real1 *entry = rays->entry[0] + lane; // where the ray enters the children, one each `stride`
-    uint stride = LANES;
-    global const uint *children = scene->nodes->child;
-    ulong met = bytes_of_bits(rays->met[lane]);
-    for (;;) {
-        uint child;
-        if (met) {
-            // On to the nearest child that is met; the others wait on the stack.
-            uint i = first_of(met);
-            real1 nearest = entry[i * stride];
-            child = children[i];
-            for (met &= met - 1; met; met &= met - 1) {
-                i = first_of(met);
-                real1 e = entry[i * stride];
-                uint other = children[i];
-                int nearer = e < nearest;
-                entries[top] = nearer ? nearest : e;
-                stack[top] = nearer ? child : other;
-                fetch_child(scene, stack[top]);
-                top++;
-                nearest = nearer ? e : nearest;
-                child = nearer ? other : child;
-            }
-        } else {
-            do {
-                if (top == 0) return;
-                child = stack[--top];
-            } while (entries[top] >= ray.tmax);
-        }
-        if (child & OPAL_LEAF) {
-            uint block = child & ~OPAL_LEAF;
-            COUNT_TESTS(scene, blocks, 1);
-            BlockTest test = intersect_block(scene->blocks + block, &ray);
-            if (test.hits) {
-                real1 t[8], reciprocal[8], b[8], c[8];
-                real8 inverse = 1 / test.determinant;
-                vstore8(test.distance * inverse, 0, t);
-                vstore8(inverse, 0, reciprocal);
-                vstore8(test.b, 0, b);
-                vstore8(test.c, 0, c);
-                for (; test.hits; test.hits &= test.hits - 1) {
-                    uint i = first_of(test.hits);
-                    if (t[i] < ray.tmax) {
-                        *t_out = ray.tmax = t[i];
-                        *u_out = b[i] * reciprocal[i];
-                        *v_out = c[i] * reciprocal[i];
-                        *slot_out = block * 8 + i;
-                    }
-                }
-            }
-        } else {
-            COUNT_TESTS(scene, nodes, 1);
-            global const BvhNode *node = scene->nodes + child;
-            real8 enter;
-            met = intersect_children(node, &ray, &enter);
-            vstore8(enter, 0, own);
-            entry = own;
-            stride = 1;
-            children = node->child;
+// What walks share: the lane, its ray, the children of the node that it is at, and those of the nodes above that have some left.
+typedef struct {
+    LaneRay ray;
+    int lane, alive, top;
+    global const uint *children, *above[OPAL_LEVELS];
+} Walk;
+
+// On to the next lane that meets the root's children; `alive` says whether there is one.
+static void take_lane(const Scene *scene, const LaneRays *rays, int *next, Walk *w) {
+    w->alive = *next < rays->walks;
+    if (!w->alive) return;
+    w->lane = rays->walking[*next];
+    *next = *next + 1;
+    w->ray = load_ray(rays, w->lane);
+    w->top = 0;
+    w->children = scene->nodes->child;
+}
+
+static mask8 root_keys(const LaneRays *rays, int lane) {
+    return (mask8)(rays->keys[0][lane], rays->keys[1][lane], rays->keys[2][lane], rays->keys[3][lane],
+                   rays->keys[4][lane], rays->keys[5][lane], rays->keys[6][lane], rays->keys[7][lane]);
+}
+
+// A walk to the nearest hit. limit: tmax, as a key; of each node its children's keys, those taken set to NO_KEY, and the least of them.
+typedef struct {
+    Walk at;
+    mask8 keys, left[OPAL_LEVELS];
+    key1 nearest, next[OPAL_LEVELS], limit;
+} ClosestWalk;
+
+// The nearest hits of all lanes.
+typedef struct {
+    real1 t[LANES], u[LANES], v[LANES];
+    uint slot[LANES];
+} LaneHits;
+
+static void start_closest(const Scene *scene, const LaneRays *rays, int *next, ClosestWalk *w) {
+    take_lane(scene, rays, next, &w->at);
+    if (!w->at.alive) return;
+    w->keys = root_keys(rays, w->at.lane);
+    w->nearest = rays->nearest[w->at.lane];
+    w->limit = key_of(w->at.ray.tmax);
+}
+
+static void test_block(const Scene *scene, uint block, ClosestWalk *w, LaneHits *hits) {
+    COUNT_TESTS(scene, blocks, 1);
+    BlockTest test = intersect_block(scene->blocks + block, &w->at.ray);
+    if (!test.hits) return;
+    real1 t[8], reciprocal[8], b[8], c[8];
+    real8 inverse = 1 / test.determinant;
+    vstore8(test.distance * inverse, 0, t);
+    vstore8(inverse, 0, reciprocal);
+    vstore8(test.b, 0, b);
+    vstore8(test.c, 0, c);
+    for (; test.hits; test.hits &= test.hits - 1) {
+        uint i = first_of(test.hits);
+        if (t[i] < w->at.ray.tmax) {
+            hits->t[w->at.lane] = w->at.ray.tmax = t[i];
+            hits->u[w->at.lane] = b[i] * reciprocal[i];
+            hits->v[w->at.lane] = c[i] * reciprocal[i];
+            hits->slot[w->at.lane] = block * 8 + i;
+            w->limit = key_of(t[i]);
         }
     }
 }
 
-// Does anything lie between tmin and tmax of lane `lane`?
-static int walk_any(const Scene *scene, const LaneRays *rays, int lane) {
-    uint stack[OPAL_STACK];
-    int top = 0;
-    LaneRay ray = load_ray(rays, lane);
-    global const uint *children = scene->nodes->child;
-    ulong met = bytes_of_bits(rays->met[lane]);
-    for (;;) {
-        uint child;
-        if (met) { // on to the first one
-            child = children[first_of(met)];
-            for (met &= met - 1; met; met &= met - 1) {
-                uint other = children[first_of(met)];
-                stack[top++] = other;
-                fetch_child(scene, other);
+// To the nearest child that is left; where the walk ends, to the next lane.
+static void step_closest(const Scene *scene, const LaneRays *rays, int *next, ClosestWalk *w, LaneHits *hits) {
+    int top = w->at.top;
+    uint child = w->at.children[w->nearest & KEYS_PLACE];
+
+    // The others wait
+    mask8 left = w->keys == (mask8)(w->nearest) ? (mask8)(NO_KEY) : w->keys;
+    key1 second = least(left);
+    w->left[top] = left;
+    w->next[top] = second;
+    w->at.above[top] = w->at.children;
+    uint other = w->at.children[second & KEYS_PLACE];
+    fetch_child(scene, second < w->limit ? other : child);
+    top += second < w->limit;
+
+    // Down to this one
+    w->nearest = NO_KEY;
+    if (child & OPAL_LEAF) {
+        test_block(scene, child & ~OPAL_LEAF, w, hits);
+    } else {
+        COUNT_TESTS(scene, nodes, 1);
+        real8 enter;
+        mask8 met = intersect_children(scene->nodes + child, &w->at.ray, &enter);
+        w->keys = met ? (keys_of(enter) & ~KEYS_PLACE) | (mask8)(0, 1, 2, 3, 4, 5, 6, 7) : (mask8)(NO_KEY);
+        w->nearest = least(w->keys);
+        w->at.children = scene->nodes[child].child;
+    }
+
+    // Nothing there: back to what waits and is not behind the hit
+    if (w->nearest >= w->limit) {
+        do {
+            if (top == 0) {
+                start_closest(scene, rays, next, w);
+                return;
             }
-        } else {
-            if (top == 0) return 0;
-            child = stack[--top];
+            w->nearest = w->next[--top];
+        } while (w->nearest >= w->limit);
+        w->keys = w->left[top];
+        w->at.children = w->at.above[top];
+    }
+    w->at.top = top;
+}
+
+// Nearest hits of the lanes that meet the root's children, before their tmax; leaves `hits` as it is where there is none.
+static void walk_closest(const Scene *scene, const LaneRays *rays, LaneHits *hits) {
+    int next = 0;
+    ClosestWalk a, b;
+    start_closest(scene, rays, &next, &a);
+    b.at.alive = 0;
+    if (LANES > 1) start_closest(scene, rays, &next, &b);
+    while (a.at.alive | b.at.alive) {
+        if (a.at.alive) step_closest(scene, rays, &next, &a, hits);
+        if (b.at.alive) step_closest(scene, rays, &next, &b, hits);
+    }
+}
+
+// A walk to any hit: the children that are met and not taken yet, a byte each.
+typedef struct {
+    Walk at;
+    ulong met, left[OPAL_LEVELS];
+} AnyWalk;
+
+static void start_any(const Scene *scene, const LaneRays *rays, int *next, AnyWalk *w) {
+    take_lane(scene, rays, next, &w->at);
+    if (w->at.alive) w->met = bytes_of(root_keys(rays, w->at.lane) != (mask8)(NO_KEY));
+}
+
+// To the first child that is left; where the walk ends, to the next lane.
+static void step_any(const Scene *scene, const LaneRays *rays, int *next, AnyWalk *w, int *blocked) {
+    if (!w->met) {
+        if (w->at.top == 0) {
+            start_any(scene, rays, next, w);
+            return;
         }
-        if (child & OPAL_LEAF) {
-            COUNT_TESTS(scene, blocks, 1);
-            if (intersect_block(scene->blocks + (child & ~OPAL_LEAF), &ray).hits) return 1;
-        } else {
-            COUNT_TESTS(scene, nodes, 1);
-            global const BvhNode *node = scene->nodes + child;
-            real8 enter;
-            met = intersect_children(node, &ray, &enter);
-            children = node->child;
+        w->at.top--;
+        w->met = w->left[w->at.top];
+        w->at.children = w->at.above[w->at.top];
+    }
+    uint child = w->at.children[first_of(w->met)];
+    w->met &= w->met - 1;
+    w->left[w->at.top] = w->met;
+    w->at.above[w->at.top] = w->at.children;
+    w->at.top += w->met != 0;
+    if (child & OPAL_LEAF) {
+        COUNT_TESTS(scene, blocks, 1);
+        w->met = 0;
+        if (intersect_block(scene->blocks + (child & ~OPAL_LEAF), &w->at.ray).hits) {
+            blocked[w->at.lane] = 1;
+            start_any(scene, rays, next, w);
         }
+    } else {
+        COUNT_TESTS(scene, nodes, 1);
+        real8 enter;
+        w->met = bytes_of(intersect_children(scene->nodes + child, &w->at.ray, &enter));
+        w->at.children = scene->nodes[child].child;
+    }
+}
+
+// Sets blocked[lane] of each lane that meets the root's children and anything between its tmin and tmax.
+static void walk_any(const Scene *scene, const LaneRays *rays, int *blocked) {
+    int next = 0;
+    AnyWalk a, b;
+    start_any(scene, rays, &next, &a);
+    b.at.alive = 0;
+    if (LANES > 1) start_any(scene, rays, &next, &b);
+    while (a.at.alive | b.at.alive) {
+        if (a.at.alive) step_any(scene, rays, &next, &a, blocked);
+        if (b.at.alive) step_any(scene, rays, &next, &b, blocked);
     }
 }
 
@@ -312,14 +407,10 @@ static Hit closest_hit(const Scene *scene, Ray ray, mask live) {
     LaneRays rays;
     store_rays(&rays, scene, ray, live);
     if (rays.walks == 0) return hit;
-    real1 t[LANES], u[LANES], v[LANES];
-    uint slot[LANES];
-    STORE(hit.t, t); STORE(hit.u, u); STORE(hit.v, v); STORE(hit.slot, slot);
-    for (int i = 0; i < rays.walks; i++) {
-        int lane = rays.walking[i];
-        walk_closest(scene, &rays, lane, t + lane, u + lane, v + lane, slot + lane);
-    }
-    Hit nearest = {LOAD(real, t), LOAD(real, u), LOAD(real, v), LOAD(uints, slot)};
+    LaneHits hits;
+    STORE(hit.t, hits.t); STORE(hit.u, hits.u); STORE(hit.v, hits.v); STORE(hit.slot, hits.slot);
+    walk_closest(scene, &rays, &hits);
+    Hit nearest = {LOAD(real, hits.t), LOAD(real, hits.u), LOAD(real, hits.v), LOAD(uints, hits.slot)};
     return nearest;
 }
 
@@ -333,7 +424,7 @@ static mask blocked_by(const Scene *scene, Ray ray, FaceRange among, mask live) 
     if (rays.walks == 0) return listed;
     int blocked[LANES];
     STORE((ints)(0), blocked);
-    for (int i = 0; i < rays.walks; i++) blocked[rays.walking[i]] = walk_any(scene, &rays, rays.walking[i]);
+    walk_any(scene, &rays, blocked);
     ints found = LOAD(ints, blocked);
     return listed | to_mask(found != 0);
 }

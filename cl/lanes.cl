@@ -6,6 +6,7 @@
 //   mask   one truth a lane, as a comparison of reals gives it: combine with & | !, never with ~ (a scalar's truth is 1)
 //   ints, uints   one index or hash a lane; their comparisons go through to_mask before they meet a mask
 //   real1, real8  one number; eight numbers of one ray (children of a node, triangles of a block)
+//   key1, mask8   an integer as wide as a real1, eight of them: keys of bvh.cl
 #if defined(__clang__)
 #pragma clang diagnostic ignored "-Wpsabi" // vectors wider than the processor's are passed in memory: all callers are in this program
 #endif
@@ -17,6 +18,12 @@
 typedef double real1;
 typedef double8 real8;
 typedef long8 mask8;
+typedef long key1;
+typedef long4 half_keys;
+typedef long2 quarter_keys;
+#define keys_of(x) as_long8(x)
+#define key_of(x) as_long(x)
+#define NO_KEY LONG_MAX
 #define R(x) x
 #define REAL_NAME double
 #define MASK_NAME long
@@ -25,6 +32,12 @@ typedef long8 mask8;
 typedef float real1;
 typedef float8 real8;
 typedef int8 mask8;
+typedef int key1;
+typedef int4 half_keys;
+typedef int2 quarter_keys;
+#define keys_of(x) as_int8(x)
+#define key_of(x) as_int(x)
+#define NO_KEY INT_MAX
 #define R(x) x##f
 #define REAL_NAME float
 #define MASK_NAME int
@@ -56,16 +69,12 @@ typedef int8 mask8;
 #define LOAD(T, array) CAT(vload, LANES)(0, array)
 #define to_mask(condition) CAT(convert_, WIDE(MASK_NAME))(condition)
 #define to_ints(m) CAT(convert_, WIDE(int))(m)
-#define AT(array, i, field) array[i] field
-#define GATHER_4(array, i, field) \
-    AT(array, i.s0, field), AT(array, i.s1, field), AT(array, i.s2, field), AT(array, i.s3, field)
-#define GATHER_8(array, i, field) \
-    GATHER_4(array, i, field), AT(array, i.s4, field), AT(array, i.s5, field), AT(array, i.s6, field), AT(array, i.s7, field)
-#define GATHER_16(array, i, field) \
-    GATHER_8(array, i, field), AT(array, i.s8, field), AT(array, i.s9, field), AT(array, i.sa, field), \
-        AT(array, i.sb, field), AT(array, i.sc, field), AT(array, i.sd, field), AT(array, i.se, field), AT(array, i.sf, field)
+// Words of all lanes by one vector of indices: compilers make hardware gathers of it.
+#define GATHER_4(p, i) p[(i).s0], p[(i).s1], p[(i).s2], p[(i).s3]
+#define GATHER_8(p, i) GATHER_4(p, i), p[(i).s4], p[(i).s5], p[(i).s6], p[(i).s7]
+#define GATHER_16(p, i) GATHER_8(p, i), p[(i).s8], p[(i).s9], p[(i).sa], p[(i).sb], p[(i).sc], p[(i).sd], p[(i).se], p[(i).sf]
 // array[i] field of each lane's own i: GATHER(real, scene->bsdfs, id, .u.phong.n)
-#define GATHER(T, array, i, field) ((T)(CAT(GATHER_, LANES)(array, i, field)))
+#define GATHER(T, array, i, field) ((T)(CAT(GATHER_, LANES)((&(array)[0] field), ((i) * (uint)(sizeof((array)[0]) / 4)))))
 #endif
 
 // A field of three floats, as one v3: GATHER_V3(scene->bsdfs, id, .u.diffuse.albedo)
@@ -77,9 +86,11 @@ typedef int mask;
 #else
 typedef WIDE(MASK_NAME) mask;
 #endif
+typedef WIDE(MASK_NAME) lane_keys; // an integer as wide as a real
 typedef WIDE(int) ints;
 typedef WIDE(uint) uints;
 
+#define real_bits(x) CAT(as_, WIDE(MASK_NAME))(x)
 #define to_real(i) CAT(convert_, WIDE(REAL_NAME))(i)
 #define to_uints(x) CAT(convert_, WIDE(uint))(x)
 

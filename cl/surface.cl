@@ -53,17 +53,18 @@ static real surface_margin(v3 p0, v3 p1, v3 p2) {
     return 24 * R(5.9604645e-08) * largest;
 }
 
-// `found`: the lanes that hit something; the others get the values of slot 0.
+// `found`: the lanes that hit something; the others get the values of slot 0. ray.d is unit but for rounding, which would add up in
+// glass and mirrors.
 static Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask found) {
     uints slot = uints_pick(found, hit.slot, (uints)(0));
     v3 p0 = triangle_vertex(scene, slot, 0), p1 = triangle_vertex(scene, slot, 1), p2 = triangle_vertex(scene, slot, 2);
     v3 e1 = v3_sub(p1, p0), e2 = v3_sub(p2, p0);
     v3 n = v3_cross(e1, e2);
-    real inverse_length = rsqrt(v3_dot(n, n));
+    real length2 = v3_dot(n, n), inverse_length = rsqrt(length2);
 
     Surface s;
     s.normal = v3_scale(n, inverse_length);
-    s.area = R(0.5) / inverse_length;
+    s.area = R(0.5) * length2 * inverse_length;
     s.margin = surface_margin(p0, p1, p2);
     // From the triangle, not along the ray: far closer to the plane. And two margins away from its sides, as far as it is wide: a ray that
     // starts at an edge of a closed room could start outside of it. The longest side is at most sqrt(2 (e1^2 + e2^2)).
@@ -73,7 +74,7 @@ static Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask found) {
     s.p = v3_mad(e1, u, v3_mad(e2, v, p0));
     uints triangle = triangle_id(scene, slot);
     s.frame = frame_of(shading_normal(scene, triangle, hit.u, hit.v, s.normal));
-    s.wi = to_local(s.frame, v3_scale(v3_neg(ray.d), rsqrt(v3_dot(ray.d, ray.d))));
+    s.wi = to_local(s.frame, v3_scale(ray.d, R(-1.5) + R(0.5) * v3_dot(ray.d, ray.d)));
     uints mesh = GATHER(uints, scene->triangles, triangle, .mesh);
     s.bsdf = GATHER(uints, scene->meshes, mesh, .bsdf);
     s.emitter = GATHER(uints, scene->meshes, mesh, .emitter);

@@ -11,7 +11,7 @@ namespace opal {
 
 #define OPAL_NONE 0xffffffffu        // no emitter, no normal, no hit, no depth limit
 #define OPAL_LEAF 0x80000000u        // a child that is a triangle block
-#define OPAL_STACK 64                // entries that a walk of the tree never exceeds: every other child of every node on the way
+#define OPAL_LEVELS 24               // nodes one below the other, root and all, that a tree never exceeds
 #define OPAL_LISTED_TRIANGLES 48     // at most so many triangles are listed outside the tree, where lanes are many ...
 #define OPAL_LISTED_VERTICES 96      // ... with at most so many distinct vertices
 

@@ -79,20 +79,13 @@ double sah_cost(const Bvh &bvh) {
     return sum / half_area(root);
 }
 
-int stack_need(const Bvh &bvh) {
-    std::vector<int> need(bvh.nodes.size());
-    for (std::size_t i = bvh.nodes.size(); i-- > 0;) { // children come after their parents
-        int children = 0;
-        for (int child = 0; child < WIDTH; child++) {
-            if (bvh.nodes[i].child[child] == OPAL_NONE)
-                continue;
-            children++;
-            if (!(bvh.nodes[i].child[child] & OPAL_LEAF))
-                need[i] = std::max(need[i], need[bvh.nodes[i].child[child]]);
-        }
-        need[i] += std::max(children - 1, 0);
-    }
-    return need[0];
+int levels_of(const Bvh &bvh) {
+    std::vector<int> levels(bvh.nodes.size(), 1);
+    for (std::size_t i = bvh.nodes.size(); i-- > 0;) // children come after their parents
+        for (uint child : bvh.nodes[i].child)
+            if (child != OPAL_NONE && !(child & OPAL_LEAF))
+                levels[i] = std::max(levels[i], levels[child] + 1);
+    return levels[0];
 }
 
 } // namespace opal

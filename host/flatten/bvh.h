@@ -24,7 +24,7 @@ constexpr double NODE_COST = 1, BLOCK_COST = 1;
 
 // Binary tree by the surface area heuristic, improved by reinsertion, collapsed to 8 children by dynamic programming
 // (Ylitie, Karras, Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", section 3.2).
-// Every triangle is in one place of one block; stack_need(bvh) < OPAL_STACK. Without triangles: a root without children, one
+// Every triangle is in one place of one block; levels_of(bvh) <= OPAL_LEVELS. Without triangles: a root without children, one
 // block of none.
 Bvh build_bvh(const TriangleSoup &soup);
 
@@ -35,8 +35,7 @@ std::vector<TriangleBlock> pack_blocks(const TriangleSoup &soup);
 // the leaves over the root's area, times NODE_COST and BLOCK_COST.
 double sah_cost(const Bvh &bvh);
 
-// Entries of the stack that a walk may need that pushes all children it enters but one: over the path where they are
-// most.
-int stack_need(const Bvh &bvh);
+// Nodes one below the other, root and all, where they are most.
+int levels_of(const Bvh &bvh);
 
 } // namespace opal

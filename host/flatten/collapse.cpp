@@ -11,7 +11,7 @@ namespace {
 struct Cover {
     float cost[WIDTH];
     unsigned char choice[WIDTH + 1];
-    unsigned short stack; // entries that a walk needs below it, as a wide node or leaf
+    unsigned short levels; // of wide nodes, this one and below; 0: a leaf
 };
 
 struct Roots {
@@ -19,12 +19,12 @@ struct Roots {
     int count = 0;
 };
 
-// Entries that a tree of halves needs: 7 for each level.
-int balanced_stack(uint count) {
+// Levels of nodes that a tree of halves needs.
+int balanced_levels(uint count) {
     int levels = 0;
     for (std::uint64_t room = BLOCK_SIZE; room < count; room *= WIDTH)
         levels++;
-    return (WIDTH - 1) * levels;
+    return levels;
 }
 
 class Collapse {
@@ -35,7 +35,7 @@ public:
     }
 
     Bvh emit() {
-        const uint root = emit(0, OPAL_STACK - 1);
+        const uint root = emit(0, OPAL_LEVELS);
         if (root & OPAL_LEAF)
             set_child(add_node(), 0, tree.nodes[0].box, root);
         return std::move(bvh);
@@ -52,7 +52,7 @@ private:
         Cover &cover = covers[index];
         const float area = node.box.half_area();
         const float leaf = node.count <= BLOCK_SIZE ? area * float(BLOCK_COST) : Box::INF;
-        cover.stack = 0;
+        cover.levels = 0;
         if (node.left == 0) {
             std::fill(std::begin(cover.cost), std::end(cover.cost), leaf);
             std::fill(std::begin(cover.choice), std::end(cover.choice), 0);
@@ -72,8 +72,8 @@ private:
             return;
         const Roots roots = children_of(index);
         for (int i = 0; i < roots.count; i++)
-            cover.stack = std::max(cover.stack, covers[roots.index[i]].stack);
-        cover.stack = static_cast<unsigned short>(cover.stack + roots.count - 1);
+            cover.levels = std::max(cover.levels, covers[roots.index[i]].levels);
+        cover.levels++;
     }
 
     // Least cost of sharing `count` roots between both children, and how many the left one gets.
@@ -110,16 +110,16 @@ private:
         return roots;
     }
 
-    // `budget`: entries left of the stack. Either the cover fits it or halves do.
+    // `budget`: levels left. Either the cover fits it or halves do.
     uint emit(uint index, int budget) {
         const BinaryNode &node = tree.nodes[index];
         if (covers[index].choice[1] == 0)
             return emit_leaf(node.first, node.count);
         const Roots roots = children_of(index);
-        budget -= roots.count - 1;
+        budget--;
         for (int i = 0; i < roots.count; i++) {
             const uint root = roots.index[i];
-            if (std::min<int>(covers[root].stack, balanced_stack(tree.nodes[root].count)) > budget)
+            if (std::min<int>(covers[root].levels, balanced_levels(tree.nodes[root].count)) > budget)
                 return emit_halves(node.first, node.count);
         }
         const uint place = add_node();

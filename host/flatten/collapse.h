@@ -8,8 +8,8 @@ namespace opal {
 constexpr int WIDTH = 8; // children of a node
 
 // The 8-wide tree of least sah_cost that keeps the binary tree's cuts (Ylitie, Karras, Laine 2017, section 3.2). Where
-// its path would need OPAL_STACK entries, what lies below is cut in halves instead, which takes 7 entries for each
-// factor of 8. May reorder tree.references.
+// it would have more than OPAL_LEVELS levels, what lies below is cut in halves instead, which takes one for each factor of 8.
+// May reorder tree.references.
 Bvh collapse(BinaryTree &tree, const TriangleSoup &soup);
 
 // A node without children.
