@@ -4,16 +4,17 @@
 //   NAME_bsdf NAME_at(scene, id)                 parameters of the materials `id`, one a lane
 //   v3   NAME_eval(b, wi, wo)                    f(wi, wo) without the cosine, 1/sr; 0 for discrete BSDFs
 //   real NAME_pdf(b, wi, wo)                     density of NAME_sample over solid angle, 1/sr; 0 for discrete BSDFs
-//   BsdfSample NAME_sample(b, wi, u, lobe)       draws wo from u and lobe in [0, 1)
+//   BsdfSample NAME_sample(b, wi, u, lobe)       draws wo from u and lobe in [0, 1), and says its density
 // A sample's weight is f cos / pdf (discrete: what remains of the radiance); 0 where nothing is reflected, never NaN.
 typedef struct {
     v3 wo, weight;
+    real pdf;        // NAME_pdf of wo: by the numbers that drew it, where they lose less
     real eta;        // index of refraction of wo's side over wi's side
     mask discrete;   // wo has no density: no light sampling can find it
 } BsdfSample;
 
-static BsdfSample bsdf_sample_of(v3 wo, v3 weight, real eta, mask discrete) {
-    BsdfSample s = {wo, weight, eta, discrete};
+static BsdfSample bsdf_sample_of(v3 wo, v3 weight, real pdf, real eta, mask discrete) {
+    BsdfSample s = {wo, weight, pdf, eta, discrete};
     return s;
 }
 
@@ -38,7 +39,7 @@ enum { BSDF_KINDS = 0 OPAL_BSDFS(COUNT_BSDF) }; // that this kernel has
 
 static uints bsdf_kind(const Scene *scene, uints id) { return GATHER(uints, scene->bsdfs, id, .kind); }
 
-// f(wi, wo) of the materials `id`, and the density of bsdf_sample.
+// f(wi, wo) of the materials `id`, and its density by bsdf_sample.
 static v3 bsdf_eval(const Scene *scene, uints id, v3 wi, v3 wo, mask live, real *pdf) {
     v3 f = v3_all((real)(0));
     *pdf = 0;
@@ -49,22 +50,13 @@ static v3 bsdf_eval(const Scene *scene, uints id, v3 wi, v3 wo, mask live, real 
     return f;
 }
 
-static real bsdf_pdf(const Scene *scene, uints id, v3 wi, v3 wo, mask live) {
-    real pdf = 0;
-    uints kind = bsdf_kind(scene, id);
-#define PDF(name) pdf = m ? name##_pdf(b, wi, wo) : pdf;
-#define PDF_KIND(name) FOR_BSDF(name, PDF)
-    OPAL_BSDFS(PDF_KIND)
-    return pdf;
-}
-
 static BsdfSample bsdf_sample(const Scene *scene, uints id, v3 wi, v2 u, real lobe, mask live) {
-    BsdfSample s = bsdf_sample_of(wi, v3_all((real)(0)), (real)(1), NO_LANES);
+    BsdfSample s = bsdf_sample_of(wi, v3_all((real)(0)), (real)(0), (real)(1), NO_LANES);
     uints kind = bsdf_kind(scene, id);
 #define SAMPLE(name) \
         BsdfSample t = name##_sample(b, wi, u, lobe); \
         s.wo = v3_pick(m, t.wo, s.wo); s.weight = v3_pick(m, t.weight, s.weight); \
-        s.eta = m ? t.eta : s.eta; s.discrete = s.discrete | (m & t.discrete);
+        s.pdf = m ? t.pdf : s.pdf; s.eta = m ? t.eta : s.eta; s.discrete = s.discrete | (m & t.discrete);
 #define SAMPLE_KIND(name) FOR_BSDF(name, SAMPLE)
     OPAL_BSDFS(SAMPLE_KIND)
     return s;

@@ -4,7 +4,7 @@ typedef struct {
     v3 p;            // the point
     v3 normal;       // geometric normal there, unit
     v3 facing;       // shading normal there: light leaves on its side
-    real density;    // of p over area, 1/m^2 in flattened units, given the emitter; 1 for a point light
+    real area;       // 1 / density of p over area, m^2 in flattened units, given the emitter; 1 for a point light
     real margin;     // as in Surface
     mask discrete;   // a point light: no direction hits it by chance
 } EmitterSample;
@@ -38,7 +38,7 @@ static EmitterSample emitter_sample(const Scene *scene, uints id, v2 point, v2 t
     EmitterSample s;
     uints kind = GATHER(uints, scene->emitters, id, .kind);
     s.p = s.normal = s.facing = v3_all((real)(0));
-    s.density = s.margin = 0;
+    s.area = s.margin = 0;
     s.discrete = NO_LANES;
 #define SAMPLE_EMITTER(name) \
     if (OPAL_HAS_emitter_##name) { \
@@ -46,7 +46,7 @@ static EmitterSample emitter_sample(const Scene *scene, uints id, v2 point, v2 t
         if (ANY(m)) { \
             EmitterSample t = emitter_##name##_sample(scene, id, point, triangle); \
             s.p = v3_pick(m, t.p, s.p); s.normal = v3_pick(m, t.normal, s.normal); s.facing = v3_pick(m, t.facing, s.facing); \
-            s.density = m ? t.density : s.density; s.margin = m ? t.margin : s.margin; \
+            s.area = m ? t.area : s.area; s.margin = m ? t.margin : s.margin; \
             s.discrete = s.discrete | (m & t.discrete); \
         } \
     }
@@ -59,7 +59,7 @@ static v3 emitter_radiance(const Scene *scene, uints id) { return GATHER_V3(scen
 // Density over area with which light sampling finds a point on an area light, all choices included, given the area of
 // the triangle it lies on.
 static real emitter_area_pdf(const Scene *scene, uints id, real triangle_area) {
-    real pdf = 1 / GATHER(real, scene->emitters, id, .area);
+    real pdf = GATHER(real, scene->emitters, id, .inverse_area);
     if (OPAL_HAS_emitter_mesh && CHOSEN(scene, triangle_choice, uniform)) {
         mask mesh = to_mask(GATHER(uints, scene->emitters, id, .kind) == EMITTER_mesh);
         real count = to_real(GATHER(uints, scene->emitters, id, .count));

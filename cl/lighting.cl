@@ -7,7 +7,6 @@ typedef struct {
     mask direct;     // no light sampling could have found what this ray hits: camera rays and discrete BSDFs
     uints depth;     // segments so far, this ray included
     Sampler sampler;
-    uints slot;      // of the film
 } Path;
 
 // The pair `dimension` of the path's present segment.
@@ -39,10 +38,22 @@ static v3 emitted(const Scene *scene, const Path *path, Surface s, Hit hit, mask
     return v3_pick(shining, radiance, none);
 }
 
-// Direct light by one point on one emitter, weighted against BSDF sampling where both are used.
-static v3 sampled_light(const Scene *scene, const Path *path, Surface s, mask live) {
-    v3 none = v3_all((real)(0));
-    if (EMITTER_KINDS == 0 || !ANY(live)) return none;
+// What a point on a light adds to a path unless something lies on the way there.
+typedef struct {
+    v3 radiance;     // throughput included
+    Ray shadow;
+    mask live;       // the lanes that have such a point
+} LightSample;
+
+// Direct light by one point on one emitter, weighted against BSDF sampling where both are used. The way there is asked by unless_blocked, later:
+// a processor then works at this and at scatter side by side.
+static LightSample sample_light(const Scene *scene, const Path *path, Surface s, mask live) {
+    LightSample sample;
+    sample.radiance = sample.shadow.o = sample.shadow.d = v3_all((real)(0));
+    sample.shadow.tmin = 0;
+    sample.shadow.tmax = 1; // the light's surface
+    sample.live = NO_LANES;
+    if (EMITTER_KINDS == 0 || !ANY(live)) return sample;
     uints id = emitter_choose(scene, path_draw(scene, path, DIM_EMITTER));
     EmitterSample light = emitter_sample(scene, id, path_draw(scene, path, DIM_LIGHT), path_draw(scene, path, DIM_TRIANGLE), live);
 
@@ -51,11 +62,11 @@ static v3 sampled_light(const Scene *scene, const Path *path, Surface s, mask li
     v3 wo = to_local(s.frame, v3_scale(to_light, inverse_distance));
     mask facing = light.discrete | (v3_dot(light.facing, to_light) < 0);
     live = live & facing & (wo.z > 0) & (inverse_distance < FAR);
-    if (!ANY(live)) return none;
+    if (!ANY(live)) return sample;
 
     // cos / distance^2 turns a density over area into one over solid angle.
     real cosine = light.discrete ? (real)(1) : fabs(v3_dot(light.normal, to_light)) * inverse_distance;
-    real per_density = cosine * square(inverse_distance) / (light.density * emitter_probability(scene, id));
+    real per_density = cosine * square(inverse_distance) * light.area / emitter_probability(scene, id);
     real bsdf_density;
     v3 f = bsdf_eval(scene, s.bsdf, s.wi, wo, live, &bsdf_density);
     if (CHOSEN(scene, lighting, mis)) {
@@ -63,17 +74,23 @@ static v3 sampled_light(const Scene *scene, const Path *path, Surface s, mask li
         per_density = weight * per_density;
     }
     v3 light_in = v3_scale(v3_mul(f, emitter_radiance(scene, id)), wo.z * per_density);
-    live = live & ((v3_largest(light_in) > 0) | !is_finite(light_in)); // what is not finite must reach the film to be counted
-    if (!ANY(live)) return none;
+    sample.live = live & ((v3_largest(light_in) > 0) | !is_finite(light_in)); // what is not finite must reach the film to be counted
+    sample.radiance = v3_mul(path->throughput, light_in);
 
-    // The ray ends at t = 1, above the light's surface as it starts above this one's.
-    v3 start = leave_surface(s, to_light);
+    // The ray ends above the light's surface as it starts above this one's.
     v3 end = v3_mad(light.normal, copysign(light.margin, -v3_dot(light.normal, to_light)), light.p);
-    Ray shadow = {start, v3_sub(end, start), (real)(0), (real)(1)};
-    mask blocked = any_hit_between(scene, shadow, live);
-    if (OPAL_TWICE_traversal) blocked = any_hit_between(scene, same_ray(shadow, blocked | (start.x < FAR)), live);
-    COUNT_TESTS(scene, shadow_rays, count_lanes(live));
-    return v3_pick(live & !blocked, light_in, none);
+    sample.shadow.o = leave_surface(s, to_light);
+    sample.shadow.d = v3_sub(end, sample.shadow.o);
+    return sample;
+}
+
+static v3 unless_blocked(const Scene *scene, LightSample sample) {
+    v3 none = v3_all((real)(0));
+    if (EMITTER_KINDS == 0 || !ANY(sample.live)) return none;
+    mask blocked = any_hit_between(scene, sample.shadow, sample.live);
+    if (OPAL_TWICE_traversal) blocked = any_hit_between(scene, same_ray(sample.shadow, blocked | (sample.shadow.o.x < FAR)), sample.live);
+    COUNT_TESTS(scene, shadow_rays, count_lanes(sample.live));
+    return v3_pick(sample.live & !blocked, sample.radiance, none);
 }
 
 // The least normal float. Below it a path carries nothing, nor may it go on: the least denormal times 0.9 is itself again, for ever.
@@ -97,7 +114,7 @@ static mask scatter(const Scene *scene, Path *path, Surface s, mask live) {
     path->throughput = v3_mul(path->throughput, sample.weight);
     path->eta = path->eta * sample.eta;
     path->direct = sample.discrete;
-    if (CHOSEN(scene, lighting, mis)) path->pdf = bsdf_pdf(scene, s.bsdf, s.wi, sample.wo, live);
+    if (CHOSEN(scene, lighting, mis)) path->pdf = sample.pdf;
     path->depth = path->depth + 1u;
     return live & (v3_largest(path->throughput) >= THROUGHPUT_LEAST);
 }

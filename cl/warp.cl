@@ -40,8 +40,8 @@ static v3 square_to_beckmann(v2 u, real alpha) {
     return direction_of(z, sqrt(tan2) * z, u.y);
 }
 static real square_to_beckmann_pdf(v3 h, real alpha) {
-    real tan = sqrt(sin2_theta(h)) / (alpha * h.z); // divided by alpha before squaring: alpha^2 may underflow
-    real density = exp(-tan * tan) * INV_PI / (square(alpha * h.z) * h.z);
+    real q = 1 / (alpha * h.z); // multiplied one by one: alpha^2 may underflow
+    real density = exp(-sin2_theta(h) * q * q) * INV_PI * q * q * (q * alpha);
     return h.z > 0 ? density : (real)(0);
 }
 

@@ -18,11 +18,11 @@ static real dielectric_pdf(dielectric_bsdf b, v3 wi, v3 wo) { return (real)(0); 
 static BsdfSample dielectric_sample(dielectric_bsdf b, v3 wi, v2 u, real lobe) {
     mask outside = wi.z > 0;
     real near = outside ? b.ext_ior : b.int_ior, far = outside ? b.int_ior : b.ext_ior;
-    real eta = far / near, sin2 = sin2_theta(wi);
-    mask reflects = lobe < fresnel_dielectric(fabs(wi.z), sin2, near, far);
-    real far_cosine = refracted_cosine(sin2, eta);
-    v3 refracted = v3_of(-wi.x / eta, -wi.y / eta, outside ? -far_cosine : far_cosine);
-    real weight = reflects ? (real)(1) : 1 / square(eta);
+    Boundary boundary = boundary_of(near, far);
+    real sin2 = sin2_theta(wi), far_cosine = refracted_cosine(sin2, boundary);
+    mask reflects = lobe < fresnel_dielectric(fabs(wi.z), sin2, boundary);
+    v3 refracted = v3_of(-wi.x * boundary.inverse_eta, -wi.y * boundary.inverse_eta, outside ? -far_cosine : far_cosine);
+    real weight = reflects ? (real)(1) : square(boundary.inverse_eta);
     return bsdf_sample_of(v3_pick(reflects, reflect_z(wi), refracted), v3_all(wi.z != 0 ? weight : (real)(0)),
-                          reflects ? (real)(1) : eta, ALL_LANES);
+                          (real)(0), reflects ? (real)(1) : boundary.eta, ALL_LANES);
 }

@@ -26,5 +26,5 @@ static real diffuse_pdf(diffuse_bsdf b, v3 wi, v3 wo) {
 static BsdfSample diffuse_sample(diffuse_bsdf b, v3 wi, v2 u, real lobe) {
     v3 wo = v3_pick(b.use_cosine, square_to_cosine_hemisphere(u), square_to_uniform_hemisphere(u));
     real weight = b.use_cosine ? (real)(1) : 2 * wo.z; // the pis cancelled on paper
-    return bsdf_sample_of(wo, v3_scale(b.albedo, wi.z > 0 ? weight : (real)(0)), (real)(1), NO_LANES);
+    return bsdf_sample_of(wo, v3_scale(b.albedo, wi.z > 0 ? weight : (real)(0)), diffuse_pdf(b, wi, wo), (real)(1), NO_LANES);
 }

@@ -17,24 +17,25 @@ static microfacet_bsdf microfacet_at(const Scene *scene, uints id) {
 
 // Shadowing of one direction w by facets of normal h.
 static real microfacet_g1(v3 w, v3 h, real alpha) {
-    real b = w.z / (alpha * sqrt(sin2_theta(w))); // +inf at the pole, where nothing is shadowed
-    real rational = (R(3.535) * b + R(2.181) * b * b) / (1 + R(2.276) * b + R(2.577) * b * b);
-    real g = b < R(1.6) ? rational : (real)(1);
+    // b = cos / (alpha sin), multiplied out: nothing is shadowed at the pole, where sin is 0
+    real c = w.z, s = alpha * sqrt(sin2_theta(w));
+    real rational = c * (R(3.535) * s + R(2.181) * c) / (s * s + c * (R(2.276) * s + R(2.577) * c));
+    real g = c < R(1.6) * s ? rational : (real)(1);
     return v3_dot(w, h) * w.z > 0 ? g : (real)(0);
 }
 
-// What eval and sample share: the coat without D, F G / (4 cos_i cos_o cos_h) ks cos_o.
-static real microfacet_coat(microfacet_bsdf b, v3 wi, v3 wo, v3 h) {
+// What eval and sample share: the coat without D, ks F G / divisor.
+static real microfacet_coat(microfacet_bsdf b, v3 wi, v3 wo, v3 h, real divisor) {
     real cosine = v3_dot(wi, h);
     real sin2 = 1 - square(cosine);
-    real f = fresnel_dielectric(fabs(cosine), real_max(sin2, (real)(0)), b.ext_ior, b.int_ior);
-    return b.ks * f * microfacet_g1(wi, h, b.alpha) * microfacet_g1(wo, h, b.alpha) / (4 * wi.z * h.z);
+    real f = fresnel_dielectric(fabs(cosine), real_max(sin2, (real)(0)), boundary_of(b.ext_ior, b.int_ior));
+    return b.ks * f * microfacet_g1(wi, h, b.alpha) * microfacet_g1(wo, h, b.alpha) / divisor;
 }
 
 static v3 microfacet_eval(microfacet_bsdf b, v3 wi, v3 wo) {
     mask above = wi.z > 0 & wo.z > 0;
     v3 h = v3_normalize(v3_add(wi, wo));
-    real coat = microfacet_coat(b, wi, wo, h) * square_to_beckmann_pdf(h, b.alpha) / wo.z;
+    real coat = microfacet_coat(b, wi, wo, h, 4 * wi.z * wo.z * h.z) * square_to_beckmann_pdf(h, b.alpha);
     v3 f = v3_add(v3_scale(b.kd, (real)(INV_PI)), v3_all(coat));
     return v3_pick(above, f, v3_all((real)(0)));
 }
@@ -57,7 +58,7 @@ static BsdfSample microfacet_sample(microfacet_bsdf b, v3 wi, v2 u, real lobe) {
     real d = square_to_beckmann_pdf(h, b.alpha);
     real base = wo.z * INV_PI;
     real density = b.ks * d / (4 * fabs(v3_dot(h, wo))) + (1 - b.ks) * base;
-    v3 f_cos = v3_add(v3_scale(b.kd, base), v3_all(microfacet_coat(b, wi, wo, h) * d));
+    v3 f_cos = v3_add(v3_scale(b.kd, base), v3_all(microfacet_coat(b, wi, wo, h, 4 * wi.z * h.z) * d));
     mask kept = wi.z > 0 & wo.z > 0 & density > 0;
-    return bsdf_sample_of(wo, v3_pick(kept, v3_scale(f_cos, 1 / density), v3_all((real)(0))), (real)(1), NO_LANES);
+    return bsdf_sample_of(wo, v3_pick(kept, v3_scale(f_cos, 1 / density), v3_all((real)(0))), kept ? density : (real)(0), (real)(1), NO_LANES);
 }

@@ -41,5 +41,6 @@ static BsdfSample phong_sample(phong_bsdf b, v3 wi, v2 u, real lobe) {
     real density = b.pd * of_base + (1 - b.pd) * of_peak;
     v3 f_cos = v3_add(v3_scale(b.kd, b.pd * of_base), v3_scale(b.ks, (1 - b.pd) * (b.n + 2) / (b.n + 1) * of_peak * wo.z));
     mask kept = wi.z > 0 & wo.z > 0 & density > 0;
-    return bsdf_sample_of(wo, v3_pick(kept, v3_scale(f_cos, 1 / density), v3_all((real)(0))), (real)(1), NO_LANES);
+    real pdf = wi.z > 0 ? b.pd * base + (1 - b.pd) * peak : (real)(0);
+    return bsdf_sample_of(wo, v3_pick(kept, v3_scale(f_cos, 1 / density), v3_all((real)(0))), pdf, (real)(1), NO_LANES);
 }

@@ -22,14 +22,16 @@ typedef struct {
     float radiance[3];    // W / (m^2 sr); point: intensity, W / sr, times FlatScene::scale^2
     float origin[3];      // parallelogram: a corner; point: its position
     float area;           // of the whole emitter
-    float u[3], v[3];     // parallelogram: its edges; it emits on the side of u x v
+    float inverse_area;   // 1 / area
+    float u[3], v[3];     // parallelogram: its edges
+    float normal[3];      // parallelogram: u x v, unit; it emits on that side
     uint first, count;    // mesh: its rows of the light triangle table
     float probability;    // of being chosen (--emitter-choice)
     float accept;         // alias table: keep this row if a uniform number is below, else take row `other`
     uint other;
     uint pad;
 } EmitterRecord;
-OPAL_SIZE_CHECK(EmitterRecord, 80);
+OPAL_SIZE_CHECK(EmitterRecord, 96);
 
 // One triangle of a mesh light, with its row of the mesh's alias table (Vose 1991). `other` counts from the mesh's first.
 typedef struct {

@@ -14,14 +14,14 @@ static EmitterSample emitter_mesh_sample(const Scene *scene, uints id, v2 point,
     v3 p0 = triangle_vertex(scene, slot, 0), p1 = triangle_vertex(scene, slot, 1), p2 = triangle_vertex(scene, slot, 2);
     v3 e1 = v3_sub(p1, p0), e2 = v3_sub(p2, p0);
     v3 n = v3_cross(e1, e2);
-    real inverse_length = rsqrt(v3_dot(n, n));
+    real length2 = v3_dot(n, n), inverse_length = rsqrt(length2);
 
     EmitterSample s;
     s.p = v3_mad(e1, u, v3_mad(e2, v, p0));
     s.normal = v3_scale(n, inverse_length);
     s.facing = shading_normal(scene, triangle_id(scene, slot), u, v, s.normal);
-    s.density = CHOSEN(scene, triangle_choice, uniform) ? 2 * inverse_length / to_real(count)
-                                                        : 1 / GATHER(real, scene->emitters, id, .area);
+    s.area = CHOSEN(scene, triangle_choice, uniform) ? R(0.5) * length2 * inverse_length * to_real(count)
+                                                     : GATHER(real, scene->emitters, id, .area);
     s.margin = surface_margin(p0, p1, p2);
     s.discrete = NO_LANES;
     return s;

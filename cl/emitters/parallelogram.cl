@@ -3,12 +3,10 @@
 static EmitterSample emitter_parallelogram_sample(const Scene *scene, uints id, v2 point, v2 triangle) {
     v3 o = GATHER_V3(scene->emitters, id, .origin);
     v3 u = GATHER_V3(scene->emitters, id, .u), v = GATHER_V3(scene->emitters, id, .v);
-    v3 n = v3_cross(u, v);
     EmitterSample s;
     s.p = v3_mad(u, point.x, v3_mad(v, point.y, o));
-    s.normal = v3_scale(n, rsqrt(v3_dot(n, n)));
-    s.facing = s.normal;
-    s.density = 1 / GATHER(real, scene->emitters, id, .area);
+    s.normal = s.facing = GATHER_V3(scene->emitters, id, .normal);
+    s.area = GATHER(real, scene->emitters, id, .area);
     s.margin = surface_margin(o, v3_add(o, v3_add(u, v)), v3_add(o, u));
     s.discrete = NO_LANES;
     return s;

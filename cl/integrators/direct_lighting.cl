@@ -20,7 +20,9 @@ static mask direct_lighting_step(const Scene *scene, Path *path, Hit hit, mask l
         by_light = by_light & heads;
         path->throughput = v3_scale(path->throughput, discrete ? (real)(1) : (real)(2));
     }
-    if (!CHOSEN(scene, lighting, bsdf))
-        path->radiance = v3_add(path->radiance, v3_mul(path->throughput, sampled_light(scene, path, s, by_light)));
-    return scatter(scene, path, s, by_bsdf);
+    if (CHOSEN(scene, lighting, bsdf)) by_light = NO_LANES;
+    LightSample light = sample_light(scene, path, s, by_light);
+    mask found_on = scatter(scene, path, s, by_bsdf);
+    path->radiance = v3_add(path->radiance, unless_blocked(scene, light));
+    return found_on;
 }

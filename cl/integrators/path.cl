@@ -11,13 +11,14 @@ static mask path_step(const Scene *scene, Path *path, Hit hit, mask live) {
     if (!ANY(found)) return found;
 
     // Light that is sampled
-    if (!CHOSEN(scene, lighting, bsdf)) {
-        mask lit = found & !bsdf_is_discrete(scene, s.bsdf);
-        path->radiance = v3_add(path->radiance, v3_mul(path->throughput, sampled_light(scene, path, s, lit)));
-    }
+    mask lit = CHOSEN(scene, lighting, bsdf) ? NO_LANES : found & !bsdf_is_discrete(scene, s.bsdf);
+    LightSample light = sample_light(scene, path, s, lit);
 
     // The next segment
     real u = path_draw(scene, path, DIM_LOBE).y;
     found = scatter(scene, path, s, found);
-    return roulette(scene, path, found, u);
+    found = roulette(scene, path, found, u);
+
+    path->radiance = v3_add(path->radiance, unless_blocked(scene, light));
+    return found;
 }

@@ -9,7 +9,7 @@ static mask whitted_step(const Scene *scene, Path *path, Hit hit, mask live) {
     path->radiance = v3_add(path->radiance, v3_mul(path->throughput, emitted(scene, path, s, hit, found)));
     found = found & to_mask(path->depth < scene->settings->max_depth);
     mask specular = found & bsdf_is_discrete(scene, s.bsdf);
-    path->radiance = v3_add(path->radiance, v3_mul(path->throughput, sampled_light(scene, path, s, found & !specular)));
+    path->radiance = v3_add(path->radiance, unless_blocked(scene, sample_light(scene, path, s, found & !specular)));
     if (!ANY(specular)) return specular;
     real u = path_draw(scene, path, DIM_LOBE).y;
     path->throughput = v3_scale(path->throughput, (real)(1 / WHITTED_SURVIVAL));

@@ -69,7 +69,7 @@ kernel void bsdf_draw(SCENE_PARAMETERS, uint id, float wi_x, float wi_y, float w
     BsdfSample s = bsdf_sample(&scene, (uints)(id), wi, get_v2(given, 0, stride, base), get(given, 2, stride, base), ALL_LANES);
     put_v3(out, BSDF_WO_X, stride, base, s.wo);
     put_v3(out, BSDF_WEIGHT_R, stride, base, s.weight);
-    put(out, BSDF_PDF, stride, base, bsdf_pdf(&scene, (uints)(id), wi, s.wo, ALL_LANES));
+    put(out, BSDF_PDF, stride, base, s.pdf);
     put(out, BSDF_ETA, stride, base, s.eta);
     put(out, BSDF_DISCRETE, stride, base, s.discrete ? (real)(1) : (real)(0));
 }
@@ -93,7 +93,7 @@ kernel void light_draw(SCENE_PARAMETERS, global const float *given, global float
     EmitterSample s = emitter_sample(&scene, id, get_v2(given, 2, stride, base), get_v2(given, 4, stride, base), ALL_LANES);
     put_v3(out, LIGHT_X, stride, base, s.p);
     put_v3(out, LIGHT_FACING_X, stride, base, s.facing);
-    put(out, LIGHT_DENSITY, stride, base, s.density * emitter_probability(&scene, id));
+    put(out, LIGHT_DENSITY, stride, base, emitter_probability(&scene, id) / s.area);
     put_uints(out, LIGHT_ID, stride, base, id);
 }
 

@@ -36,25 +36,22 @@ typedef struct {
     uint x, y, sample;              // the next one
 } Queue;
 
-// Hands each ended lane the next sample of the queue, where there is one. Returns the lanes that carry a path.
-static mask refill(const Scene *scene, Queue *queue, Path *path, mask live) {
-    if (queue->y >= queue->bottom || !ANY(!live)) return live;
-    uint width = scene->settings->width;
-    int ended[LANES], fresh[LANES];
-    uint xs[LANES], ys[LANES], samples[LANES], slots[LANES];
-    int count = list_lanes(!live, ended);
-    STORE((ints)(0), fresh);
-    STORE(path->sampler.sample, samples);
-    STORE(path->slot, slots);
-    STORE((uints)(0), xs);
-    STORE((uints)(0), ys);
-    for (int i = 0; i < count && queue->y < queue->bottom; i++) {
-        int lane = ended[i];
-        fresh[lane] = 1;
-        xs[lane] = queue->x;
-        ys[lane] = queue->y;
-        samples[lane] = queue->first_sample + queue->sample;
-        slots[lane] = (queue->y * width + queue->x) * queue->pass_samples + (samples[lane] - queue->pass_first);
+// Camera paths, one an entry.
+typedef struct {
+    uint pixel[LANES], sample[LANES], key0[LANES], key1[LANES];
+    real1 d[3][LANES], tmin[LANES], tmax[LANES];
+} CameraPaths;
+
+// The next samples of the queue as camera paths, LANES at once; returns how many there are.
+static int start_paths(const Scene *scene, Queue *queue, CameraPaths *paths) {
+    uint xs[LANES], ys[LANES];
+    int count = 0;
+    for (int i = 0; i < LANES; i++) {
+        xs[i] = queue->x;
+        ys[i] = queue->y;
+        paths->sample[i] = queue->first_sample + queue->sample;
+        if (queue->y == queue->bottom) continue;
+        count++;
         if (++queue->sample == queue->samples) {
             queue->sample = 0;
             if (++queue->x == queue->right) {
@@ -63,39 +60,77 @@ static mask refill(const Scene *scene, Queue *queue, Path *path, mask live) {
             }
         }
     }
+    uints x = LOAD(uints, xs), y = LOAD(uints, ys);
+    Sampler sampler = sampler_start(y * scene->settings->width + x, LOAD(uints, paths->sample), scene->settings->seed);
+    Ray ray = camera_ray(scene, x, y, film_offset(scene, sampler));
+    STORE(sampler.pixel, paths->pixel);
+    STORE(sampler.key0, paths->key0);
+    STORE(sampler.key1, paths->key1);
+    STORE(ray.d.x, paths->d[0]);
+    STORE(ray.d.y, paths->d[1]);
+    STORE(ray.d.z, paths->d[2]);
+    STORE(ray.tmin, paths->tmin);
+    STORE(ray.tmax, paths->tmax);
+    return count;
+}
+
+// Camera paths that were made together and wait for a lane, from `next` to `end`, and those that lanes took last.
+typedef struct {
+    CameraPaths ready, taken;
+    int next, end;
+} Starts;
+
+// Hands each ended lane the next camera path, where there is one. Returns the lanes that carry a path.
+static mask refill(const Scene *scene, Queue *queue, Starts *starts, Path *path, mask live) {
+    int ended[LANES], fresh[LANES];
+    int count = list_lanes(!live, ended);
+    if (count == 0) return live;
+    STORE((ints)(0), fresh);
+    CameraPaths *from = &starts->ready, *to = &starts->taken;
+    for (int i = 0; i < count; i++) {
+        if (starts->next == starts->end) {
+            if (queue->y == queue->bottom) break;
+            starts->next = 0;
+            starts->end = start_paths(scene, queue, from);
+        }
+        int lane = ended[i], k = starts->next++;
+        fresh[lane] = 1;
+        to->pixel[lane] = from->pixel[k];
+        to->sample[lane] = from->sample[k];
+        to->key0[lane] = from->key0[k];
+        to->key1[lane] = from->key1[k];
+        for (int axis = 0; axis < 3; axis++) to->d[axis][lane] = from->d[axis][k];
+        to->tmin[lane] = from->tmin[k];
+        to->tmax[lane] = from->tmax[k];
+    }
     ints taken = LOAD(ints, fresh);
     mask start = to_mask(taken != 0);
-    uints x = LOAD(uints, xs), y = LOAD(uints, ys);
-    Sampler sampler = sampler_start(y * width + x, LOAD(uints, samples), scene->settings->seed);
-    Ray ray = camera_ray(scene, x, y, film_offset(scene, sampler));
-
-    path->ray.o = v3_pick(start, ray.o, path->ray.o);
-    path->ray.d = v3_pick(start, ray.d, path->ray.d);
-    path->ray.tmin = start ? ray.tmin : path->ray.tmin;
-    path->ray.tmax = start ? ray.tmax : path->ray.tmax;
+    path->ray.o = v3_pick(start, v3_from(scene->settings->camera_origin), path->ray.o);
+    path->ray.d = v3_pick(start, v3_of(LOAD(real, to->d[0]), LOAD(real, to->d[1]), LOAD(real, to->d[2])), path->ray.d);
+    path->ray.tmin = start ? LOAD(real, to->tmin) : path->ray.tmin;
+    path->ray.tmax = start ? LOAD(real, to->tmax) : path->ray.tmax;
     path->throughput = v3_pick(start, v3_all((real)(1)), path->throughput);
     path->radiance = v3_pick(start, v3_all((real)(0)), path->radiance);
     path->eta = start ? (real)(1) : path->eta;
     path->pdf = start ? (real)(1) : path->pdf;
     path->direct = start | path->direct;
     path->depth = uints_pick(start, (uints)(1), path->depth);
-    path->sampler.pixel = uints_pick(start, sampler.pixel, path->sampler.pixel);
-    path->sampler.sample = uints_pick(start, sampler.sample, path->sampler.sample);
-    path->sampler.key0 = uints_pick(start, sampler.key0, path->sampler.key0);
-    path->sampler.key1 = uints_pick(start, sampler.key1, path->sampler.key1);
-    path->slot = uints_pick(start, LOAD(uints, slots), path->slot);
+    path->sampler.pixel = uints_pick(start, LOAD(uints, to->pixel), path->sampler.pixel);
+    path->sampler.sample = uints_pick(start, LOAD(uints, to->sample), path->sampler.sample);
+    path->sampler.key0 = uints_pick(start, LOAD(uints, to->key0), path->sampler.key0);
+    path->sampler.key1 = uints_pick(start, LOAD(uints, to->key1), path->sampler.key1);
     return live | start;
 }
 
 // Puts the radiance of the paths that ended into their slots; where tests are counted, the rays, shadow rays and rounds since a path
 // ended before instead, into the slot of the first.
-static void retire(const Scene *scene, global float *slots, const Path *path, mask ended) {
+static void retire(const Scene *scene, global float *slots, const Queue *queue, const Path *path, mask ended) {
     int lanes[LANES];
     int count = list_lanes(ended, lanes);
     if (count == 0) return;
     uint place[LANES];
     real1 r[LANES], g[LANES], b[LANES];
-    STORE(path->slot, place);
+    STORE(path->sampler.pixel * queue->pass_samples + (path->sampler.sample - queue->pass_first), place);
     STORE(path->radiance.x, r);
     STORE(path->radiance.y, g);
     STORE(path->radiance.z, b);
@@ -142,18 +177,22 @@ kernel void render(SCENE_PARAMETERS, global float *slots, uint first_item, uint 
     Path path;
     path.ray.o = path.ray.d = path.throughput = path.radiance = v3_all((real)(0));
     path.ray.tmin = path.ray.tmax = path.pdf = path.eta = 0;
-    path.depth = path.slot = path.sampler.pixel = path.sampler.sample = path.sampler.key0 = path.sampler.key1 = (uints)(0);
+    path.depth = path.sampler.pixel = path.sampler.sample = path.sampler.key0 = path.sampler.key1 = (uints)(0);
     path.direct = NO_LANES;
     mask live = NO_LANES;
+    Starts starts;
+    starts.next = 0;
+    starts.end = start_paths(&scene, &queue, &starts.ready);
+    starts.taken = starts.ready;
     for (;;) {
-        live = refill(&scene, &queue, &path, live);
+        live = refill(&scene, &queue, &starts, &path, live);
         if (!ANY(live)) break;
         Hit hit = closest_hit(&scene, path.ray, live);
         if (OPAL_TWICE_traversal) hit = closest_hit(&scene, same_ray(path.ray, hit.t > -1), live);
         COUNT_TESTS(&scene, rays, count_lanes(live));
         COUNT_TESTS(&scene, rounds, 1);
         mask go_on = integrator_step(&scene, &path, hit, live);
-        retire(&scene, slots, &path, live & !go_on);
+        retire(&scene, slots, &queue, &path, live & !go_on);
         live = go_on;
     }
 }

@@ -81,8 +81,11 @@ private:
             record.u[axis] = soup.vertices[u][axis] - soup.vertices[o][axis];
             record.v[axis] = soup.vertices[v][axis] - soup.vertices[o][axis];
         }
-        const double area = length(normal_of(soup.vertices[o], soup.vertices[u], soup.vertices[v]));
+        const Vec3 normal = normal_of(soup.vertices[o], soup.vertices[u], soup.vertices[v]);
+        const double area = length(normal);
+        store(normal * (1 / area), record.normal);
         record.area = float(area);
+        record.inverse_area = float(1 / area);
         return area;
     }
 
@@ -98,6 +101,7 @@ private:
         }
         record.kind = EMITTER_mesh;
         record.area = float(area);
+        record.inverse_area = float(1 / area);
         record.first = uint(scene.light_triangles.size());
         record.count = end - begin;
         if (description.strategy[AXIS_triangle_choice] == CHOICE_triangle_choice_uniform)

@@ -46,7 +46,7 @@ TEST_CASE("What computes wrong is found", "[selftest]") {
         {"basics", "rng.cl", "0x53a22864u", "0x53a22865u", "Sobol"},
         {"warps", "warp.cl", "sqrt(u.x * (2 - u.x))", "sqrt(u.x)", "warps: samples"},
         {"bsdfs", "bsdfs/microfacet.cl", "(4 * fabs(v3_dot(h, wo)));", "(4.1f * fabs(v3_dot(h, wo)));", "BSDFs: samples"},
-        {"bsdfs", "bsdfs/dielectric.cl", "1 / square(eta)", "1 / eta", "mirror, dielectric"},
+        {"bsdfs", "bsdfs/dielectric.cl", "square(boundary.inverse_eta)", "boundary.inverse_eta", "mirror, dielectric"},
         {"lights", "emitters/mesh.cl", "folded ? 1 - point.x", "folded ? point.x", "lights: points"},
         {"rays", "bvh.cl", "STORE(to_ints(inverse.x < 0)", "STORE(to_ints(inverse.x > 0)", "tree: hits"},
         {"images", "lighting.cl", "wo.z * per_density", "per_density", "furnace"},
