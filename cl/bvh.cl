@@ -119,6 +119,7 @@ static mask8 intersect_children(global const BvhNode *node, const LaneRay *ray, 
 
 // Asks for the memory of a child that waits.
 static void fetch_child(const Scene *scene, uint child) {
+    if (!OPAL_HAS_large_tree) return;
     global const char *at = child & OPAL_LEAF ? (global const char *)(scene->blocks + (child & ~OPAL_LEAF))
                                               : (global const char *)(scene->nodes + child);
     FETCH(at); FETCH(at + 64); FETCH(at + 128); FETCH(at + 192); FETCH(at + 256);

@@ -80,11 +80,9 @@ typedef struct {
     int next, end;
 } Starts;
 
-// Hands each ended lane the next camera path, where there is one. Returns the lanes that carry a path.
-static mask refill(const Scene *scene, Queue *queue, Starts *starts, Path *path, mask live) {
-    int ended[LANES], fresh[LANES];
-    int count = list_lanes(!live, ended);
-    if (count == 0) return live;
+// Hands `count` ended lanes the next camera paths, where there are any. Returns the lanes that got one.
+static mask refill(const Scene *scene, Queue *queue, Starts *starts, Path *path, const int *ended, int count) {
+    int fresh[LANES];
     STORE((ints)(0), fresh);
     CameraPaths *from = &starts->ready, *to = &starts->taken;
     for (int i = 0; i < count; i++) {
@@ -119,15 +117,12 @@ static mask refill(const Scene *scene, Queue *queue, Starts *starts, Path *path,
     path->sampler.sample = uints_pick(start, LOAD(uints, to->sample), path->sampler.sample);
     path->sampler.key0 = uints_pick(start, LOAD(uints, to->key0), path->sampler.key0);
     path->sampler.key1 = uints_pick(start, LOAD(uints, to->key1), path->sampler.key1);
-    return live | start;
+    return start;
 }
 
-// Puts the radiance of the paths that ended into their slots; where tests are counted, the rays, shadow rays and rounds since a path
+// Puts the radiance of the `count` paths that ended into their slots; where tests are counted, the rays, shadow rays and rounds since a path
 // ended before instead, into the slot of the first.
-static void retire(const Scene *scene, global float *slots, const Queue *queue, const Path *path, mask ended) {
-    int lanes[LANES];
-    int count = list_lanes(ended, lanes);
-    if (count == 0) return;
+static void retire(const Scene *scene, global float *slots, const Queue *queue, const Path *path, const int *ended, int count) {
     uint place[LANES];
     real1 r[LANES], g[LANES], b[LANES];
     STORE(path->sampler.pixel * queue->pass_samples + (path->sampler.sample - queue->pass_first), place);
@@ -138,13 +133,13 @@ static void retire(const Scene *scene, global float *slots, const Queue *queue, 
         STORE((real)(0), r);
         STORE((real)(0), g);
         STORE((real)(0), b);
-        r[lanes[0]] = scene->tests[TESTS_rays];
-        g[lanes[0]] = scene->tests[TESTS_shadow_rays];
-        b[lanes[0]] = scene->tests[TESTS_rounds];
+        r[ended[0]] = scene->tests[TESTS_rays];
+        g[ended[0]] = scene->tests[TESTS_shadow_rays];
+        b[ended[0]] = scene->tests[TESTS_rounds];
         for (uint k = 0; k < TESTS_KINDS; k++) scene->tests[k] = 0;
     }
     for (int i = 0; i < count; i++) {
-        int lane = lanes[i];
+        int lane = ended[i];
         global float *slot = slots + 3 * (ulong)place[lane];
         slot[0] = r[lane];
         slot[1] = g[lane];
@@ -179,21 +174,23 @@ kernel void render(SCENE_PARAMETERS, global float *slots, uint first_item, uint 
     path.ray.tmin = path.ray.tmax = path.pdf = path.eta = 0;
     path.depth = path.sampler.pixel = path.sampler.sample = path.sampler.key0 = path.sampler.key1 = (uints)(0);
     path.direct = NO_LANES;
-    mask live = NO_LANES;
     Starts starts;
     starts.next = 0;
     starts.end = start_paths(&scene, &queue, &starts.ready);
     starts.taken = starts.ready;
-    for (;;) {
-        live = refill(&scene, &queue, &starts, &path, live);
-        if (!ANY(live)) break;
+    int ended[LANES], count = list_lanes(ALL_LANES, ended);
+    mask live = refill(&scene, &queue, &starts, &path, ended, count);
+    while (ANY(live)) {
         Hit hit = closest_hit(&scene, path.ray, live);
         if (OPAL_TWICE_traversal) hit = closest_hit(&scene, same_ray(path.ray, hit.t > -1), live);
         COUNT_TESTS(&scene, rays, count_lanes(live));
         COUNT_TESTS(&scene, rounds, 1);
         mask go_on = integrator_step(&scene, &path, hit, live);
-        retire(&scene, slots, &queue, &path, live & !go_on);
+        count = list_lanes(live & !go_on, ended);
         live = go_on;
+        if (count == 0) continue;
+        retire(&scene, slots, &queue, &path, ended, count);
+        live = live | refill(&scene, &queue, &starts, &path, ended, count);
     }
 }
 

@@ -17,6 +17,7 @@
     OPAL_FEATURE_ROW(shading_normals)  /* some mesh interpolates vertex normals */ \
     OPAL_FEATURE_ROW(listed)           /* some triangles (all of a tiny scene, the largest of others) are tested against all lanes */ \
     OPAL_FEATURE_ROW(tree)             /* the others are in a tree, walked lane by lane */ \
+    OPAL_FEATURE_ROW(large_tree)       /* the tree is larger than the caches of a core: ask ahead for the memory of what waits */ \
     OPAL_FEATURE_ROW(wide_filter)      /* the pixel filter reaches over its pixel */
 
 #endif

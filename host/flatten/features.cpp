@@ -17,6 +17,9 @@ std::string plural(std::size_t count, const char *one, const char *many) {
     return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
+// Bytes. Asking ahead costs 2 to 5 % of a ray's time in trees of 0.1 to 3 MiB, and saves 6 % at 110 MiB.
+constexpr std::size_t LARGE_TREE = 4 << 20;
+
 class Decider {
 public:
     Decider(const SceneDescription &from, const FlatScene &flat, int width)
@@ -82,6 +85,11 @@ public:
         if (inside == 0 && lanes >= LISTED_LANES)
             return {false, scene.triangles.empty() ? "there are no triangles" : "all triangles are listed"};
         return {true, plural(inside, "triangle", "triangles")};
+    }
+
+    Decision large_tree() const {
+        const std::size_t bytes = scene.nodes.size() * sizeof(BvhNode) + scene.blocks.size() * sizeof(TriangleBlock);
+        return {tree().on && bytes > LARGE_TREE, fmt::format("{:.1f} MiB of nodes and triangles", double(bytes) / (1 << 20))};
     }
 
     Decision wide_filter() const {
