@@ -41,10 +41,10 @@ static key1 least(mask8 keys) {
 
 // All lanes' rays, laid out so that a loop can read one lane after the other.
 typedef struct {
-    real1 o[3][LANES], inverse[3][LANES], shear_x[LANES], shear_y[LANES], scale_z[LANES], tmin[LANES], tmax[LANES];
-    int near[3][LANES], kx[LANES], ky[LANES], kz[LANES]; // as in LaneRay
+    real1 o[3][LANES], inverse[3][LANES], widened[3][LANES], shear_x[LANES], shear_y[LANES], scale_z[LANES], tmin[LANES], tmax[LANES];
+    int near[3][LANES], far[3][LANES], kx[LANES], ky[LANES], kz[LANES]; // as in LaneRay
     key1 keys[8][LANES], nearest[LANES]; // of the root's children; the least of them
-    int walking[LANES], walks;           // the lanes that meet any, and how many these are
+    uint walking;                        // the lanes that meet any, a bit each
 } LaneRays;
 
 // Tests the root's children against all lanes as intersect_children does for one.
@@ -66,13 +66,13 @@ static void meet_root(LaneRays *rays, global const BvhNode *root, Ray ray, v3 in
         STORE(key, rays->keys[i]);
     }
     STORE(nearest, rays->nearest);
-    rays->walks = list_lanes(nearest < none, rays->walking);
+    rays->walking = lanes_of(nearest < none);
 }
 
 static void store_rays(LaneRays *rays, const Scene *scene, Ray ray, mask live) {
     v3 inverse = v3_of(safe_inverse(ray.d.x), safe_inverse(ray.d.y), safe_inverse(ray.d.z));
     meet_root(rays, scene->nodes, ray, inverse, live);
-    if (rays->walks == 0) return;
+    if (rays->walking == 0) return;
     Shear s = shear_with(ray.d, inverse);
     STORE(ray.o.x, rays->o[0]); STORE(ray.o.y, rays->o[1]); STORE(ray.o.z, rays->o[2]);
     STORE(inverse.x, rays->inverse[0]); STORE(inverse.y, rays->inverse[1]); STORE(inverse.z, rays->inverse[2]);
@@ -82,24 +82,25 @@ static void store_rays(LaneRays *rays, const Scene *scene, Ray ray, mask live) {
     ints kx = to_ints(s.x) ? (ints)(1) : to_ints(s.y) ? (ints)(2) : (ints)(0);
     STORE(kx, rays->kx); STORE(3 - kx - kz, rays->ky); STORE(kz, rays->kz);
     ints lower = (ints)(0), upper = (ints)(24); // rows of BvhNode::lo and BvhNode::hi
-    STORE(to_ints(inverse.x < 0) ? upper : lower, rays->near[0]);
-    STORE(to_ints(inverse.y < 0) ? upper + 8 : lower + 8, rays->near[1]);
-    STORE(to_ints(inverse.z < 0) ? upper + 16 : lower + 16, rays->near[2]);
+    ints near_x = to_ints(inverse.x < 0) ? upper : lower, near_y = to_ints(inverse.y < 0) ? upper + 8 : lower + 8;
+    ints near_z = to_ints(inverse.z < 0) ? upper + 16 : lower + 16;
+    STORE(near_x, rays->near[0]); STORE(near_y, rays->near[1]); STORE(near_z, rays->near[2]);
+    STORE(24 - near_x, rays->far[0]); STORE(40 - near_y, rays->far[1]); STORE(56 - near_z, rays->far[2]);
+    v3 widened = v3_scale(inverse, (real)(1 + 8 * EPSILON));
+    STORE(widened.x, rays->widened[0]); STORE(widened.y, rays->widened[1]); STORE(widened.z, rays->widened[2]);
 }
 
-static LaneRay load_ray(const LaneRays *rays, int lane) {
-    LaneRay r;
-    for (int axis = 0; axis < 3; axis++) {
-        r.o[axis] = rays->o[axis][lane];
-        r.inverse[axis] = rays->inverse[axis][lane];
-        r.widened[axis] = r.inverse[axis] * (1 + 8 * EPSILON);
-        r.near[axis] = (uint)rays->near[axis][lane];
-        r.far[axis] = 24 + 16 * axis - r.near[axis];
-    }
-    r.shear_x = rays->shear_x[lane]; r.shear_y = rays->shear_y[lane]; r.scale_z = rays->scale_z[lane];
-    r.tmin = rays->tmin[lane]; r.tmax = rays->tmax[lane];
-    r.kx = (uint)rays->kx[lane]; r.ky = (uint)rays->ky[lane]; r.kz = (uint)rays->kz[lane];
-    r.sheared_o[0] = rays->o[r.kx][lane]; r.sheared_o[1] = rays->o[r.ky][lane]; r.sheared_o[2] = rays->o[r.kz][lane];
+// Of which only what a test needs is read: one expression, for a loop over the axes would be kept as a copy in memory.
+static LaneRay load_ray(const LaneRays *rays, int lane, real1 tmax) {
+    uint kx = (uint)rays->kx[lane], ky = (uint)rays->ky[lane], kz = (uint)rays->kz[lane];
+    LaneRay r = {
+        {rays->o[0][lane], rays->o[1][lane], rays->o[2][lane]},
+        {rays->inverse[0][lane], rays->inverse[1][lane], rays->inverse[2][lane]},
+        {rays->widened[0][lane], rays->widened[1][lane], rays->widened[2][lane]},
+        {(uint)rays->near[0][lane], (uint)rays->near[1][lane], (uint)rays->near[2][lane]},
+        {(uint)rays->far[0][lane], (uint)rays->far[1][lane], (uint)rays->far[2][lane]},
+        kx, ky, kz, {rays->o[kx][lane], rays->o[ky][lane], rays->o[kz][lane]},
+        rays->shear_x[lane], rays->shear_y[lane], rays->scale_z[lane], rays->tmin[lane], tmax};
     return r;
 }
 
@@ -127,18 +128,18 @@ static void fetch_child(const Scene *scene, uint child) {
 
 // What walks share: the lane, its ray, the children of the node that it is at, and those of the nodes above that have some left.
 typedef struct {
-    LaneRay ray;
+    real1 tmax;
     int lane, alive, top;
     global const uint *children, *above[OPAL_LEVELS];
 } Walk;
 
 // On to the next lane that meets the root's children; `alive` says whether there is one.
-static void take_lane(const Scene *scene, const LaneRays *rays, int *next, Walk *w) {
-    w->alive = *next < rays->walks;
+static void take_lane(const Scene *scene, const LaneRays *rays, uint *waiting, Walk *w) {
+    w->alive = *waiting != 0;
     if (!w->alive) return;
-    w->lane = rays->walking[*next];
-    *next = *next + 1;
-    w->ray = load_ray(rays, w->lane);
+    w->lane = lowest_lane(*waiting);
+    *waiting &= *waiting - 1;
+    w->tmax = rays->tmax[w->lane];
     w->top = 0;
     w->children = scene->nodes->child;
 }
@@ -161,17 +162,18 @@ typedef struct {
     uint slot[LANES];
 } LaneHits;
 
-static void start_closest(const Scene *scene, const LaneRays *rays, int *next, ClosestWalk *w) {
-    take_lane(scene, rays, next, &w->at);
+static void start_closest(const Scene *scene, const LaneRays *rays, uint *waiting, ClosestWalk *w) {
+    take_lane(scene, rays, waiting, &w->at);
     if (!w->at.alive) return;
     w->keys = root_keys(rays, w->at.lane);
     w->nearest = rays->nearest[w->at.lane];
-    w->limit = key_of(w->at.ray.tmax);
+    w->limit = key_of(w->at.tmax);
 }
 
-static void test_block(const Scene *scene, uint block, ClosestWalk *w, LaneHits *hits) {
+static void test_block(const Scene *scene, const LaneRays *rays, uint block, ClosestWalk *w, LaneHits *hits) {
     COUNT_TESTS(scene, blocks, 1);
-    BlockTest test = intersect_block(scene->blocks + block, &w->at.ray);
+    LaneRay ray = load_ray(rays, w->at.lane, w->at.tmax);
+    BlockTest test = intersect_block(scene->blocks + block, &ray);
     if (!test.hits) return;
     real1 t[8], reciprocal[8], b[8], c[8];
     real8 inverse = 1 / test.determinant;
@@ -181,8 +183,8 @@ static void test_block(const Scene *scene, uint block, ClosestWalk *w, LaneHits 
     vstore8(test.c, 0, c);
     for (; test.hits; test.hits &= test.hits - 1) {
         uint i = first_of(test.hits);
-        if (t[i] < w->at.ray.tmax) {
-            hits->t[w->at.lane] = w->at.ray.tmax = t[i];
+        if (t[i] < w->at.tmax) {
+            hits->t[w->at.lane] = w->at.tmax = t[i];
             hits->u[w->at.lane] = b[i] * reciprocal[i];
             hits->v[w->at.lane] = c[i] * reciprocal[i];
             hits->slot[w->at.lane] = block * 8 + i;
@@ -192,7 +194,7 @@ static void test_block(const Scene *scene, uint block, ClosestWalk *w, LaneHits 
 }
 
 // To the nearest child that is left; where the walk ends, to the next lane.
-static void step_closest(const Scene *scene, const LaneRays *rays, int *next, ClosestWalk *w, LaneHits *hits) {
+static void step_closest(const Scene *scene, const LaneRays *rays, uint *waiting, ClosestWalk *w, LaneHits *hits) {
     int top = w->at.top;
     uint child = w->at.children[w->nearest & KEYS_PLACE];
 
@@ -209,11 +211,12 @@ static void step_closest(const Scene *scene, const LaneRays *rays, int *next, Cl
     // Down to this one
     w->nearest = NO_KEY;
     if (child & OPAL_LEAF) {
-        test_block(scene, child & ~OPAL_LEAF, w, hits);
+        test_block(scene, rays, child & ~OPAL_LEAF, w, hits);
     } else {
         COUNT_TESTS(scene, nodes, 1);
         real8 enter;
-        mask8 met = intersect_children(scene->nodes + child, &w->at.ray, &enter);
+        LaneRay ray = load_ray(rays, w->at.lane, w->at.tmax);
+        mask8 met = intersect_children(scene->nodes + child, &ray, &enter);
         w->keys = met ? (keys_of(enter) & ~KEYS_PLACE) | (mask8)(0, 1, 2, 3, 4, 5, 6, 7) : (mask8)(NO_KEY);
         w->nearest = least(w->keys);
         w->at.children = scene->nodes[child].child;
@@ -223,7 +226,7 @@ static void step_closest(const Scene *scene, const LaneRays *rays, int *next, Cl
     if (w->nearest >= w->limit) {
         do {
             if (top == 0) {
-                start_closest(scene, rays, next, w);
+                start_closest(scene, rays, waiting, w);
                 return;
             }
             w->nearest = w->next[--top];
@@ -236,14 +239,14 @@ static void step_closest(const Scene *scene, const LaneRays *rays, int *next, Cl
 
 // Nearest hits of the lanes that meet the root's children, before their tmax; leaves `hits` as it is where there is none.
 static void walk_closest(const Scene *scene, const LaneRays *rays, LaneHits *hits) {
-    int next = 0;
+    uint waiting = rays->walking;
     ClosestWalk a, b;
-    start_closest(scene, rays, &next, &a);
+    start_closest(scene, rays, &waiting, &a);
     b.at.alive = 0;
-    if (LANES > 1) start_closest(scene, rays, &next, &b);
+    if (LANES > 1) start_closest(scene, rays, &waiting, &b);
     while (a.at.alive | b.at.alive) {
-        if (a.at.alive) step_closest(scene, rays, &next, &a, hits);
-        if (b.at.alive) step_closest(scene, rays, &next, &b, hits);
+        if (a.at.alive) step_closest(scene, rays, &waiting, &a, hits);
+        if (b.at.alive) step_closest(scene, rays, &waiting, &b, hits);
     }
 }
 
@@ -253,16 +256,16 @@ typedef struct {
     ulong met, left[OPAL_LEVELS];
 } AnyWalk;
 
-static void start_any(const Scene *scene, const LaneRays *rays, int *next, AnyWalk *w) {
-    take_lane(scene, rays, next, &w->at);
+static void start_any(const Scene *scene, const LaneRays *rays, uint *waiting, AnyWalk *w) {
+    take_lane(scene, rays, waiting, &w->at);
     if (w->at.alive) w->met = bytes_of(root_keys(rays, w->at.lane) != (mask8)(NO_KEY));
 }
 
 // To the first child that is left; where the walk ends, to the next lane.
-static void step_any(const Scene *scene, const LaneRays *rays, int *next, AnyWalk *w, int *blocked) {
+static void step_any(const Scene *scene, const LaneRays *rays, uint *waiting, AnyWalk *w, uint *blocked) {
     if (!w->met) {
         if (w->at.top == 0) {
-            start_any(scene, rays, next, w);
+            start_any(scene, rays, waiting, w);
             return;
         }
         w->at.top--;
@@ -274,32 +277,35 @@ static void step_any(const Scene *scene, const LaneRays *rays, int *next, AnyWal
     w->left[w->at.top] = w->met;
     w->at.above[w->at.top] = w->at.children;
     w->at.top += w->met != 0;
+    LaneRay ray = load_ray(rays, w->at.lane, w->at.tmax);
     if (child & OPAL_LEAF) {
         COUNT_TESTS(scene, blocks, 1);
         w->met = 0;
-        if (intersect_block(scene->blocks + (child & ~OPAL_LEAF), &w->at.ray).hits) {
-            blocked[w->at.lane] = 1;
-            start_any(scene, rays, next, w);
+        if (intersect_block(scene->blocks + (child & ~OPAL_LEAF), &ray).hits) {
+            *blocked |= 1u << w->at.lane;
+            start_any(scene, rays, waiting, w);
         }
     } else {
         COUNT_TESTS(scene, nodes, 1);
         real8 enter;
-        w->met = bytes_of(intersect_children(scene->nodes + child, &w->at.ray, &enter));
+        w->met = bytes_of(intersect_children(scene->nodes + child, &ray, &enter));
         w->at.children = scene->nodes[child].child;
     }
 }
 
-// Sets blocked[lane] of each lane that meets the root's children and anything between its tmin and tmax.
-static void walk_any(const Scene *scene, const LaneRays *rays, int *blocked) {
-    int next = 0;
+// The lanes that meet the root's children and anything between their tmin and tmax.
+static uint walk_any(const Scene *scene, const LaneRays *rays) {
+    uint blocked = 0;
+    uint waiting = rays->walking;
     AnyWalk a, b;
-    start_any(scene, rays, &next, &a);
+    start_any(scene, rays, &waiting, &a);
     b.at.alive = 0;
-    if (LANES > 1) start_any(scene, rays, &next, &b);
+    if (LANES > 1) start_any(scene, rays, &waiting, &b);
     while (a.at.alive | b.at.alive) {
-        if (a.at.alive) step_any(scene, rays, &next, &a, blocked);
-        if (b.at.alive) step_any(scene, rays, &next, &b, blocked);
+        if (a.at.alive) step_any(scene, rays, &waiting, &a, &blocked);
+        if (b.at.alive) step_any(scene, rays, &waiting, &b, &blocked);
     }
+    return blocked;
 }
 
 // Listed faces: the vertices as all lanes see them, moved and sheared once for all faces that share them.
@@ -407,7 +413,7 @@ static Hit closest_hit(const Scene *scene, Ray ray, mask live) {
     ray.tmax = hit.t;
     LaneRays rays;
     store_rays(&rays, scene, ray, live);
-    if (rays.walks == 0) return hit;
+    if (rays.walking == 0) return hit;
     LaneHits hits;
     STORE(hit.t, hits.t); STORE(hit.u, hits.u); STORE(hit.v, hits.v); STORE(hit.slot, hits.slot);
     walk_closest(scene, &rays, &hits);
@@ -422,12 +428,8 @@ static mask blocked_by(const Scene *scene, Ray ray, FaceRange among, mask live) 
     if (!OPAL_HAS_tree) return listed;
     LaneRays rays;
     store_rays(&rays, scene, ray, live & !listed);
-    if (rays.walks == 0) return listed;
-    int blocked[LANES];
-    STORE((ints)(0), blocked);
-    walk_any(scene, &rays, blocked);
-    ints found = LOAD(ints, blocked);
-    return listed | to_mask(found != 0);
+    if (rays.walking == 0) return listed;
+    return listed | mask_of(walk_any(scene, &rays));
 }
 
 static mask any_hit(const Scene *scene, Ray ray, mask live) { return blocked_by(scene, ray, scene->settings->listed, live); }

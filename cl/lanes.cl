@@ -47,8 +47,8 @@ typedef int2 quarter_keys;
 #if LANES == 1
 #define WIDE(T) T
 #define ANY(m) (m)
-#define EACH_LANE(E) E(0)
-#define LANE_OF(v, i) (v)
+#define LANE_BITS(m) ((uint)(m))
+#define LANE_PLACES 1
 #define STORE(v, array) ((array)[0] = (v))
 #define LOAD(T, array) ((array)[0])
 #define to_mask(condition) (condition)
@@ -65,6 +65,15 @@ typedef int2 quarter_keys;
 #define ANY_8(w) ANY_4((w).lo | (w).hi)
 #define ANY_16(w) ANY_8((w).lo | (w).hi)
 #define ANY(m) CAT(ANY_, LANES)(CAT(as_ulong, CAT(HALF_, LANES))(to_ints(m)))
+#define BITS_2(w) ((uint)((w).x | (w).y))
+#define BITS_4(w) BITS_2((w).lo | (w).hi)
+#define BITS_8(w) BITS_4((w).lo | (w).hi)
+#define BITS_16(w) BITS_8((w).lo | (w).hi)
+#define PLACES_4 (int4)(1, 2, 4, 8)
+#define PLACES_8 (int8)(PLACES_4, PLACES_4 << 4)
+#define PLACES_16 (int16)(PLACES_8, PLACES_8 << 8)
+#define LANE_PLACES CAT(PLACES_, LANES)
+#define LANE_BITS(m) CAT(BITS_, LANES)((m) & LANE_PLACES)
 #define STORE(v, array) CAT(vstore, LANES)(v, 0, array)
 #define LOAD(T, array) CAT(vload, LANES)(0, array)
 #define to_mask(condition) CAT(convert_, WIDE(MASK_NAME))(condition)
@@ -119,21 +128,11 @@ static v3 v3_cross(v3 a, v3 b) { return v3_of(a.y * b.z - a.z * b.y, a.z * b.x -
 static v3 v3_normalize(v3 a) { return v3_scale(a, rsqrt(v3_dot(a, a))); }
 static v3 v3_abs(v3 a) { return v3_of(fabs(a.x), fabs(a.y), fabs(a.z)); }
 
-// The lanes of m, lowest first; returns how many. Walking through a list costs one wrong guess of the processor, asking each lane several.
-static int list_lanes(mask m, int *list) {
-    int of[LANES], count = 0;
-    STORE(to_ints(m), of);
-    for (int lane = 0; lane < LANES; lane++) {
-        list[count] = lane;
-        count += of[lane] & 1;
-    }
-    return count;
-}
-
-static int count_lanes(mask m) {
-    int list[LANES];
-    return list_lanes(m, list);
-}
+// The lanes of m, a bit each, to be walked through by lowest_lane; the mask of such bits; how many they are.
+static uint lanes_of(mask m) { return LANE_BITS(to_ints(m)); }
+static int lowest_lane(uint lanes) { return (int)popcount(~lanes & (lanes - 1)); } // CL 1.2 has no ctz
+static mask mask_of(uint lanes) { return to_mask((LANE_PLACES & (int)lanes) != 0); }
+static int count_lanes(mask m) { return (int)popcount(lanes_of(m)); }
 
 static uints uints_pick(mask m, uints yes, uints no) { return to_ints(m) ? yes : no; }
 static v3 v3_pick(mask m, v3 yes, v3 no) { return v3_of(m ? yes.x : no.x, m ? yes.y : no.y, m ? yes.z : no.z); }

@@ -80,19 +80,18 @@ typedef struct {
     int next, end;
 } Starts;
 
-// Hands `count` ended lanes the next camera paths, where there are any. Returns the lanes that got one.
-static mask refill(const Scene *scene, Queue *queue, Starts *starts, Path *path, const int *ended, int count) {
-    int fresh[LANES];
-    STORE((ints)(0), fresh);
+// Hands the ended lanes the next camera paths, where there are any. Returns the lanes that got one.
+static mask refill(const Scene *scene, Queue *queue, Starts *starts, Path *path, uint ended) {
+    uint taken = 0;
     CameraPaths *from = &starts->ready, *to = &starts->taken;
-    for (int i = 0; i < count; i++) {
+    for (; ended; ended &= ended - 1) {
         if (starts->next == starts->end) {
             if (queue->y == queue->bottom) break;
             starts->next = 0;
             starts->end = start_paths(scene, queue, from);
         }
-        int lane = ended[i], k = starts->next++;
-        fresh[lane] = 1;
+        int lane = lowest_lane(ended), k = starts->next++;
+        taken |= 1u << lane;
         to->pixel[lane] = from->pixel[k];
         to->sample[lane] = from->sample[k];
         to->key0[lane] = from->key0[k];
@@ -101,8 +100,7 @@ static mask refill(const Scene *scene, Queue *queue, Starts *starts, Path *path,
         to->tmin[lane] = from->tmin[k];
         to->tmax[lane] = from->tmax[k];
     }
-    ints taken = LOAD(ints, fresh);
-    mask start = to_mask(taken != 0);
+    mask start = mask_of(taken);
     path->ray.o = v3_pick(start, v3_from(scene->settings->camera_origin), path->ray.o);
     path->ray.d = v3_pick(start, v3_of(LOAD(real, to->d[0]), LOAD(real, to->d[1]), LOAD(real, to->d[2])), path->ray.d);
     path->ray.tmin = start ? LOAD(real, to->tmin) : path->ray.tmin;
@@ -120,9 +118,9 @@ static mask refill(const Scene *scene, Queue *queue, Starts *starts, Path *path,
     return start;
 }
 
-// Puts the radiance of the `count` paths that ended into their slots; where tests are counted, the rays, shadow rays and rounds since a path
+// Puts the radiance of the paths that ended into their slots; where tests are counted, the rays, shadow rays and rounds since a path
 // ended before instead, into the slot of the first.
-static void retire(const Scene *scene, global float *slots, const Queue *queue, const Path *path, const int *ended, int count) {
+static void retire(const Scene *scene, global float *slots, const Queue *queue, const Path *path, uint ended) {
     uint place[LANES];
     real1 r[LANES], g[LANES], b[LANES];
     STORE(path->sampler.pixel * queue->pass_samples + (path->sampler.sample - queue->pass_first), place);
@@ -133,13 +131,13 @@ static void retire(const Scene *scene, global float *slots, const Queue *queue, 
         STORE((real)(0), r);
         STORE((real)(0), g);
         STORE((real)(0), b);
-        r[ended[0]] = scene->tests[TESTS_rays];
-        g[ended[0]] = scene->tests[TESTS_shadow_rays];
-        b[ended[0]] = scene->tests[TESTS_rounds];
+        r[lowest_lane(ended)] = scene->tests[TESTS_rays];
+        g[lowest_lane(ended)] = scene->tests[TESTS_shadow_rays];
+        b[lowest_lane(ended)] = scene->tests[TESTS_rounds];
         for (uint k = 0; k < TESTS_KINDS; k++) scene->tests[k] = 0;
     }
-    for (int i = 0; i < count; i++) {
-        int lane = ended[i];
+    for (; ended; ended &= ended - 1) {
+        int lane = lowest_lane(ended);
         global float *slot = slots + 3 * (ulong)place[lane];
         slot[0] = r[lane];
         slot[1] = g[lane];
@@ -178,19 +176,18 @@ kernel void render(SCENE_PARAMETERS, global float *slots, uint first_item, uint 
     starts.next = 0;
     starts.end = start_paths(&scene, &queue, &starts.ready);
     starts.taken = starts.ready;
-    int ended[LANES], count = list_lanes(ALL_LANES, ended);
-    mask live = refill(&scene, &queue, &starts, &path, ended, count);
+    mask live = refill(&scene, &queue, &starts, &path, lanes_of(ALL_LANES));
     while (ANY(live)) {
         Hit hit = closest_hit(&scene, path.ray, live);
         if (OPAL_TWICE_traversal) hit = closest_hit(&scene, same_ray(path.ray, hit.t > -1), live);
         COUNT_TESTS(&scene, rays, count_lanes(live));
         COUNT_TESTS(&scene, rounds, 1);
         mask go_on = integrator_step(&scene, &path, hit, live);
-        count = list_lanes(live & !go_on, ended);
+        uint ended = lanes_of(live & !go_on);
         live = go_on;
-        if (count == 0) continue;
-        retire(&scene, slots, &queue, &path, ended, count);
-        live = live | refill(&scene, &queue, &starts, &path, ended, count);
+        if (ended == 0) continue;
+        retire(&scene, slots, &queue, &path, ended);
+        live = live | refill(&scene, &queue, &starts, &path, ended);
     }
 }
 

@@ -22,7 +22,7 @@ const std::vector<Control> numbers = {
 };
 
 const std::vector<Control> hits = {
-    {{"children beyond tmin are dropped", "bvh.cl", "} while (w->nearest >= w->limit);", "} while (w->nearest > key_of(4 * w->at.ray.tmin + R(0.3)));"}, "tree", check_tree},
+    {{"children beyond tmin are dropped", "bvh.cl", "} while (w->nearest >= w->limit);", "} while (w->nearest > key_of(4 * rays->tmin[w->at.lane] + R(0.3)));"}, "tree", check_tree},
     {{"any-hit enters one child of each node", "bvh.cl", "w->at.top += w->met != 0;", ""},
      "tree", check_tree},
     {{"far bound ignored in leaves", "triangle.cl", "real8 bound = ray->tmax *", "real8 bound = R(1e30) *"}, "tree", check_tree},
@@ -35,7 +35,7 @@ const std::vector<Control> hits = {
     {{"far bound ignored by any-hit", "bvh.cl", " & (test.distance < ray.tmax * test.determinant));", ");"}, "tiny", check_tiny},
     {{"edges belong to no triangle", "triangle.cl", "real8_min(a, real8_min(b, c)) >= 0 | real8_max(a, real8_max(b, c)) <= 0", "real8_min(a, real8_min(b, c)) > 0 | real8_max(a, real8_max(b, c)) < 0"},
      "watertight", check_watertight},
-    {{"boxes a little small", "bvh.cl", "r.widened[axis] = r.inverse[axis] * (1 + 8 * EPSILON)", "r.widened[axis] = r.inverse[axis] * (1 - 1000 * EPSILON)"}, "watertight", check_watertight},
+    {{"boxes a little small", "bvh.cl", "v3_scale(inverse, (real)(1 + 8 * EPSILON))", "v3_scale(inverse, (real)(1 - 1000 * EPSILON))"}, "watertight", check_watertight},
 };
 
 const std::vector<Control> densities = {
