@@ -113,13 +113,15 @@ std::vector<uint> choose_listed(const TriangleSoup &soup) {
     const bool tiny = soup.corners.size() <= OPAL_LISTED_TRIANGLES;
     std::vector<std::pair<float, uint>> candidates; // -area, id: the largest come first, equals in their order
     for (uint id = 0; id < soup.corners.size(); id++)
-        if (const float area = box_of(soup, id).half_area(); tiny || area >= LISTED_SHARE * scene.half_area())
+        if (const float area = box_of(soup, id).half_area(); tiny || area >= FIRST_SHARE * scene.half_area())
             candidates.push_back({-area, id});
     std::sort(candidates.begin(), candidates.end());
 
     std::vector<uint> listed;
     std::set<std::array<float, 3>> distinct;
-    for (const auto &[area, id] : candidates) {
+    for (const auto &[minus_area, id] : candidates) {
+        if (!tiny && listed.size() >= FIRST_LISTED && -minus_area < LISTED_SHARE * scene.half_area())
+            break;
         std::set<std::array<float, 3>> with = distinct;
         for (uint vertex : soup.corners[id])
             with.insert(soup.vertices[vertex]);

@@ -8,9 +8,11 @@
 namespace opal {
 
 // Ids of the triangles to list: all of a scene that is small enough, else the largest, whose boxes have at least
-// LISTED_SHARE of the surface of the scene's box. At most OPAL_LISTED_TRIANGLES, with OPAL_LISTED_VERTICES distinct vertices.
+// LISTED_SHARE of the surface of the scene's box. Two faces are tested side by side in the time of one: the first FIRST_LISTED triangles, as many as
+// two quadrilaterals have, need FIRST_SHARE only. At most OPAL_LISTED_TRIANGLES, with OPAL_LISTED_VERTICES distinct vertices.
 std::vector<uint> choose_listed(const TriangleSoup &soup);
-constexpr double LISTED_SHARE = 0.05;
+constexpr double LISTED_SHARE = 0.05, FIRST_SHARE = 0.01;
+constexpr std::size_t FIRST_LISTED = 4;
 
 // A triangle A B C and, where both make a convex quadrilateral A B D C, a second one D C B: their ids, OPAL_NONE for no second one.
 struct Face {

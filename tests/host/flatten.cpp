@@ -285,6 +285,17 @@ TEST_CASE("the largest triangles are listed beside the tree, each triangle is in
     CHECK(*std::min_element(std::begin(lows), std::end(lows)) == float((1 - scene.center.z) * scene.scale));
     CHECK(flatten(description, 1).listed_faces.empty());
 
+    // A smaller one is listed beside a single large one, as two cost what one does; a third would cost more.
+    const auto with_lamps = [&](std::vector<double> sides) {
+        std::vector<Mesh> meshes{diffuse(grid), diffuse(Parallelogram{{-5, -5, 0}, {40, 0, 0}, {0, 40, 0}})};
+        for (double side : sides)
+            meshes.push_back(diffuse(Parallelogram{{side, side, 3}, {0, side, 0}, {side, 0, 0}}));
+        return flatten(scene_of(std::move(meshes)), 8).listed_triangles;
+    };
+    CHECK(with_lamps({8}) == 4);
+    CHECK(with_lamps({8, 7}) == 4);
+    CHECK(with_lamps({1}) == 2);
+
     // Light below the floor makes it one that may block.
     SceneDescription lit = description;
     lit.point_lights.push_back({{0, 0, -1}, {1, 1, 1}, {}});
