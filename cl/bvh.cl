@@ -149,7 +149,8 @@ static mask8 root_keys(const LaneRays *rays, int lane) {
                    rays->keys[4][lane], rays->keys[5][lane], rays->keys[6][lane], rays->keys[7][lane]);
 }
 
-// A walk to the nearest hit. limit: tmax, as a key; of each node its children's keys, those taken set to NO_KEY, and the least of them.
+// A walk to the nearest hit: of each node the keys of its children, those taken set to NO_KEY, and the least of them. limit: the greatest key that
+// what is entered before tmax may have.
 typedef struct {
     Walk at;
     mask8 keys, left[OPAL_LEVELS];
@@ -167,7 +168,7 @@ static void start_closest(const Scene *scene, const LaneRays *rays, uint *waitin
     if (!w->at.alive) return;
     w->keys = root_keys(rays, w->at.lane);
     w->nearest = rays->nearest[w->at.lane];
-    w->limit = key_of(w->at.tmax);
+    w->limit = key_of(w->at.tmax) | KEYS_PLACE;
 }
 
 static void test_block(const Scene *scene, const LaneRays *rays, uint block, ClosestWalk *w, LaneHits *hits) {
@@ -188,7 +189,7 @@ static void test_block(const Scene *scene, const LaneRays *rays, uint block, Clo
             hits->u[w->at.lane] = b[i] * reciprocal[i];
             hits->v[w->at.lane] = c[i] * reciprocal[i];
             hits->slot[w->at.lane] = block * 8 + i;
-            w->limit = key_of(t[i]);
+            w->limit = key_of(t[i]) | KEYS_PLACE;
         }
     }
 }
@@ -205,8 +206,8 @@ static void step_closest(const Scene *scene, const LaneRays *rays, uint *waiting
     w->next[top] = second;
     w->at.above[top] = w->at.children;
     uint other = w->at.children[second & KEYS_PLACE];
-    fetch_child(scene, second < w->limit ? other : child);
-    top += second < w->limit;
+    fetch_child(scene, second <= w->limit ? other : child);
+    top += second <= w->limit;
 
     // Down to this one
     w->nearest = NO_KEY;
@@ -223,14 +224,14 @@ static void step_closest(const Scene *scene, const LaneRays *rays, uint *waiting
     }
 
     // Nothing there: back to what waits and is not behind the hit
-    if (w->nearest >= w->limit) {
+    if (w->nearest > w->limit) {
         do {
             if (top == 0) {
                 start_closest(scene, rays, waiting, w);
                 return;
             }
             w->nearest = w->next[--top];
-        } while (w->nearest >= w->limit);
+        } while (w->nearest > w->limit);
         w->keys = w->left[top];
         w->at.children = w->at.above[top];
     }

@@ -22,7 +22,7 @@ const std::vector<Control> numbers = {
 };
 
 const std::vector<Control> hits = {
-    {{"children beyond tmin are dropped", "bvh.cl", "} while (w->nearest >= w->limit);", "} while (w->nearest > key_of(4 * rays->tmin[w->at.lane] + R(0.3)));"}, "tree", check_tree},
+    {{"children beyond tmin are dropped", "bvh.cl", "} while (w->nearest > w->limit);", "} while (w->nearest > key_of(4 * rays->tmin[w->at.lane] + R(0.3)));"}, "tree", check_tree},
     {{"any-hit enters one child of each node", "bvh.cl", "w->at.top += w->met != 0;", ""},
      "tree", check_tree},
     {{"far bound ignored in leaves", "triangle.cl", "real8 bound = ray->tmax *", "real8 bound = R(1e30) *"}, "tree", check_tree},
