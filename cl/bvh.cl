@@ -126,7 +126,7 @@ static void fetch_child(const Scene *scene, uint child) {
     FETCH(at); FETCH(at + 64); FETCH(at + 128); FETCH(at + 192); FETCH(at + 256);
 }
 
-// What walks share: the lane, its ray, the children of the node that it is at, and those of the nodes above that have some left.
+// What walks share: the lane, its far bound, the children of the node that it is at, and those of the nodes above that have some left.
 typedef struct {
     real1 tmax;
     int lane, alive, top;

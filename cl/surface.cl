@@ -54,7 +54,7 @@ static real surface_margin(v3 p0, v3 p1, v3 p2) {
 }
 
 // `found`: the lanes that hit something; the others get the values of slot 0. ray.d is unit but for rounding, which would add up in
-// glass and mirrors.
+// glass and mirrors: one Newton step towards 1 / sqrt(d.d) takes it away from wi.
 static Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask found) {
     uints slot = uints_pick(found, hit.slot, (uints)(0));
     v3 p0 = triangle_vertex(scene, slot, 0), p1 = triangle_vertex(scene, slot, 1), p2 = triangle_vertex(scene, slot, 2);
