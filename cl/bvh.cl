@@ -435,5 +435,5 @@ static mask blocked_by(const Scene *scene, Ray ray, FaceRange among, mask live) 
 
 static mask any_hit(const Scene *scene, Ray ray, mask live) { return blocked_by(scene, ray, scene->settings->listed, live); }
 
-// The same for a ray from one point of the scene to another: the walls around the scene cannot block it.
-static mask any_hit_between(const Scene *scene, Ray ray, mask live) { return blocked_by(scene, ray, scene->settings->listed_inside, live); }
+// The same for a ray from a point of the scene to one on a light: neither the walls around the scene nor the only lamp can block it.
+static mask any_hit_to_light(const Scene *scene, Ray ray, mask live) { return blocked_by(scene, ray, scene->settings->listed_to_light, live); }

@@ -87,8 +87,8 @@ static LightSample sample_light(const Scene *scene, const Path *path, Surface s,
 static v3 unless_blocked(const Scene *scene, LightSample sample) {
     v3 none = v3_all((real)(0));
     if (EMITTER_KINDS == 0 || !ANY(sample.live)) return none;
-    mask blocked = any_hit_between(scene, sample.shadow, sample.live);
-    if (OPAL_TWICE_traversal) blocked = any_hit_between(scene, same_ray(sample.shadow, blocked | (sample.shadow.o.x < FAR)), sample.live);
+    mask blocked = any_hit_to_light(scene, sample.shadow, sample.live);
+    if (OPAL_TWICE_traversal) blocked = any_hit_to_light(scene, same_ray(sample.shadow, blocked | (sample.shadow.o.x < FAR)), sample.live);
     COUNT_TESTS(scene, shadow_rays, count_lanes(sample.live));
     return v3_pick(sample.live & !blocked, sample.radiance, none);
 }

@@ -73,7 +73,7 @@ typedef struct {
     uint spp;                       // samples of a pixel in the whole render (the strata of --sampler stratified)
     uint seed;
     FaceRange listed;
-    FaceRange listed_inside;        // those faces that parts of the scene are on both sides of
+    FaceRange listed_to_light;      // those that may block light on the way from a light
     uint listed_slot;               // of the first listed triangle: block * 8
     uint emitter_count;
     uint max_depth;                 // segments of the longest path: 1 shows emitters, 2 adds direct light; OPAL_NONE: no limit

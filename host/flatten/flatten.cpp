@@ -76,6 +76,19 @@ void gather_bsdfs(const SceneDescription &description, FlatScene &scene) {
     }
 }
 
+// Point lights and the corners of triangles that emit: all rays to light end in one of these points or between them.
+std::vector<std::array<float, 3>> light_points(const SceneDescription &description, const Frame &frame, const TriangleSoup &soup,
+                                               const std::vector<Triangle> &triangles) {
+    std::vector<std::array<float, 3>> points;
+    for (const PointLight &light : description.point_lights)
+        points.push_back(frame(light.position));
+    for (size_t id = 0; id < triangles.size(); id++)
+        if (description.meshes[triangles[id].mesh].radiance)
+            for (uint vertex : soup.corners[id])
+                points.push_back(soup.vertices[vertex]);
+    return points;
+}
+
 void build_acceleration(TriangleSoup &soup, const std::vector<std::array<float, 3>> &lights, bool with_listed, FlatScene &scene) {
     const auto start = std::chrono::steady_clock::now();
     const std::vector<uint> ids = choose_listed(soup);
@@ -99,10 +112,7 @@ FlatScene flatten(const SceneDescription &description, int lanes) {
     fill_strategy(description, frame, scene.settings);
     gather_bsdfs(description, scene);
     TriangleSoup soup = gather_triangles(description, frame, scene);
-    std::vector<std::array<float, 3>> lights;
-    for (const PointLight &light : description.point_lights)
-        lights.push_back(frame(light.position));
-    build_acceleration(soup, lights, lanes >= LISTED_LANES && description.strategy.specialise, scene);
+    build_acceleration(soup, light_points(description, frame, soup, scene.triangles), lanes >= LISTED_LANES && description.strategy.specialise, scene);
     gather_emitters(description, frame, soup, scene);
     scene.settings.emitter_count = uint(scene.emitters.size());
     scene.features = find_features(description, scene, lanes);

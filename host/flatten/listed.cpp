@@ -75,32 +75,44 @@ Face make_face(uint first, uint second, TriangleSoup &soup, std::vector<Triangle
     return {first, OPAL_NONE};
 }
 
-// Does the plane of a b c have points of the scene on both sides?
+// Where points lie beside the plane of a b c.
 class Sides {
 public:
     Sides(const Point &a, const Point &b, const Point &c) : on_plane(vec3(a)) {
         const Vec3 n = normal_of(a, b, c);
         normal = n * (1 / length(n));
     }
-    // False once it has.
-    bool add(const Point &p) {
+    void add(const Point &p) {
         const double distance = dot(vec3(p) - on_plane, normal);
         lowest = std::min(lowest, distance);
         highest = std::max(highest, distance);
-        return lowest >= -ROUNDING || highest <= ROUNDING;
     }
+    bool all_on_one(double doubt) const { return lowest >= -doubt || highest <= doubt; }
+    bool all_in_plane(double doubt) const { return lowest >= -doubt && highest <= doubt; }
 
 private:
     Vec3 on_plane, normal;
     double lowest = 0, highest = 0;
 };
 
-bool is_outer(const Face &face, const TriangleSoup &soup, const std::vector<Point> &lights) {
+double largest_coordinate(const Point &p) { return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}); }
+
+// Does no ray from a point of the scene to one of `lights` cross the face? So where all of the scene is on one side of its plane, and where
+// all lights are in it.
+bool never_blocks(const Face &face, const TriangleSoup &soup, const std::vector<Point> &lights) {
     const auto &[a, b, c] = soup.corners[face.first];
     Sides sides(soup.vertices[a], soup.vertices[b], soup.vertices[c]);
-    const auto add = [&](uint vertex) { return sides.add(soup.vertices[vertex]); };
-    return std::all_of(lights.begin(), lights.end(), [&](const Point &p) { return sides.add(p); }) &&
-           std::all_of(soup.corners.begin(), soup.corners.end(), [&](const auto &corners) { return std::all_of(corners.begin(), corners.end(), add); });
+    double largest = 0;
+    for (const Point &p : lights) {
+        sides.add(p);
+        largest = std::max(largest, largest_coordinate(p));
+    }
+    if (!lights.empty() && sides.all_in_plane(ROUNDING * largest))
+        return true;
+    for (size_t i = 0; i < soup.corners.size() && sides.all_on_one(ROUNDING); i++)
+        for (uint vertex : soup.corners[i])
+            sides.add(soup.vertices[vertex]);
+    return sides.all_on_one(ROUNDING);
 }
 
 } // namespace
@@ -169,7 +181,7 @@ void plant_tree(const TriangleSoup &soup, const std::vector<Face> &listed, FlatS
 }
 
 void list_faces(const TriangleSoup &soup, std::vector<Face> listed, const std::vector<std::array<float, 3>> &lights, FlatScene &scene) {
-    const auto outer = std::stable_partition(listed.begin(), listed.end(), [&](const Face &face) { return !is_outer(face, soup, lights); });
+    const auto idle = std::stable_partition(listed.begin(), listed.end(), [&](const Face &face) { return !never_blocks(face, soup, lights); });
     scene.settings.listed_slot = uint(scene.blocks.size()) * 8;
     std::map<Point, uint> vertices;
     const auto at = [&](uint id, size_t corner) {
@@ -184,8 +196,8 @@ void list_faces(const TriangleSoup &soup, std::vector<Face> listed, const std::v
         shapes.insert(shapes.end(), {face.first, pair ? face.second : face.first});
         ids.insert(ids.end(), {face.first, face.second});
         scene.settings.listed = {uint(scene.listed_faces.size()), uint(vertices.size())};
-        if (scene.listed_faces.size() == size_t(outer - listed.begin()))
-            scene.settings.listed_inside = scene.settings.listed;
+        if (scene.listed_faces.size() == size_t(idle - listed.begin()))
+            scene.settings.listed_to_light = scene.settings.listed;
     }
     if (!listed.empty()) {
         std::vector<TriangleBlock> blocks = pack_blocks(only(soup, shapes));

@@ -25,8 +25,8 @@ std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, std:
 // The tree over the triangles that are in none of `listed`.
 void plant_tree(const TriangleSoup &soup, const std::vector<Face> &listed, FlatScene &scene);
 
-// Blocks, distinct vertices and edges of the listed faces. Those with all triangles and `lights` on one side, which no ray between
-// two points of the scene crosses, come last.
+// Blocks, distinct vertices and edges of the listed faces. Those that no ray from a point of the scene
+// to one of `lights` (or between them) crosses come last: with all triangles and lights on one side, or with all lights in their plane.
 void list_faces(const TriangleSoup &soup, std::vector<Face> listed, const std::vector<std::array<float, 3>> &lights, FlatScene &scene);
 
 } // namespace opal

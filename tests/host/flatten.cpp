@@ -140,7 +140,7 @@ TEST_CASE("tiny scenes share corners and need no tree", "[flatten]") {
     CHECK(scene.listed_triangles == 12);
     CHECK(scene.settings.listed.vertices == 8);
     CHECK(scene.settings.listed.faces == 6);
-    CHECK(scene.settings.listed_inside.faces == 0); // nothing is outside of a cube
+    CHECK(scene.settings.listed_to_light.faces == 0); // nothing is outside of a cube
     REQUIRE(scene.listed_faces.size() == 6);
     for (uint i = 0; i < 6; i++)
         CHECK(triangles_of_face(scene, i).size() == 2);
@@ -269,7 +269,7 @@ TEST_CASE("the largest triangles are listed beside the tree, each triangle is in
     CHECK(scene.features["tree"]);
     REQUIRE(scene.listed_faces.size() == 1);
     CHECK(scene.listed_triangles == 2);
-    CHECK(scene.settings.listed_inside.faces == 0); // the grid is on one side of the floor
+    CHECK(scene.settings.listed_to_light.faces == 0); // the grid is on one side of the floor
     CHECK(scene.listed_vertices.size() == 3 * 4);
     REQUIRE(triangles_of_face(scene, 0).size() == 2);
     for (uint place = 0; place < 2; place++)
@@ -299,7 +299,28 @@ TEST_CASE("the largest triangles are listed beside the tree, each triangle is in
     // Light below the floor makes it one that may block.
     SceneDescription lit = description;
     lit.point_lights.push_back({{0, 0, -1}, {1, 1, 1}, {}});
-    CHECK(flatten(lit, 8).settings.listed_inside.faces == 1);
+    CHECK(flatten(lit, 8).settings.listed_to_light.faces == 1);
+
+    // A lamp in the middle of the scene does not block its own light, nor do two in one plane; one above the other may, and so may a mirror there.
+    const auto blocking = [&](std::vector<double> lamps, double mirror) {
+        std::vector<Mesh> meshes{diffuse(grid)};
+        const auto add = [&](double x, double z, bool shines) {
+            meshes.push_back(diffuse(Parallelogram{{x, 0, z}, {0, 20, 0}, {9, 0, 0}}));
+            if (shines)
+                meshes.back().radiance = Color{1, 1, 1};
+        };
+        for (size_t i = 0; i < lamps.size(); i++)
+            add(10 * double(i), lamps[i], true);
+        add(0, mirror, false);
+        const FlatScene lit_scene = flatten(scene_of(std::move(meshes)), 8);
+        CHECK(lit_scene.listed_faces.size() == lamps.size() + 1);
+        return lit_scene.settings.listed_to_light.faces;
+    };
+    CHECK(blocking({1.3}, 9) == 0);
+    CHECK(blocking({1.3, 1.3}, 9) == 0);
+    CHECK(blocking({1.3, 1.2}, 9) == 2);
+    CHECK(blocking({1.3}, 1.4) == 1);
+    CHECK(blocking({1.3}, 1.3) == 0); // in the lamp's plane
 }
 
 TEST_CASE("two triangles are one face only where they make a convex quadrilateral", "[flatten]") {
