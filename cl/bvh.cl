@@ -310,17 +310,16 @@ static uint walk_any(const Scene *scene, const LaneRays *rays) {
 }
 
 // Listed faces: the vertices as all lanes see them, moved and sheared once for all faces that share them.
-typedef struct { real x[OPAL_LISTED_VERTICES], y[OPAL_LISTED_VERTICES], z[OPAL_LISTED_VERTICES]; } ListedView;
+typedef struct { real x[OPAL_LISTED_VERTICES], y[OPAL_LISTED_VERTICES]; } ListedView;
 
 // The first `count` vertices.
 static void view_listed(const Scene *scene, Ray ray, uint count, ListedView *view) {
     Shear s = shear_of(ray.d);
-    // x = v[kx] - shear_x v[kz] - (the same of o), with the axes of each lane as vectors; likewise y, and z = v[kz] - o[kz].
+    // x = v[kx] - shear_x v[kz] - (the same of o), with the axes of each lane as vectors; likewise y.
     real zero = 0, one = 1;
     v3 px = v3_of(s.x ? -s.shear_x : s.y ? zero : one, s.x ? one : s.y ? -s.shear_x : zero, s.x ? zero : s.y ? one : -s.shear_x);
     v3 py = v3_of(s.x ? -s.shear_y : s.y ? one : zero, s.x ? zero : s.y ? -s.shear_y : one, s.x ? one : s.y ? zero : -s.shear_y);
-    v3 pz = v3_scale(v3_of(s.x ? one : zero, s.y ? one : zero, s.x | s.y ? zero : one), s.scale_z);
-    real ox = v3_dot(px, ray.o), oy = v3_dot(py, ray.o), oz = v3_dot(pz, ray.o);
+    real ox = v3_dot(px, ray.o), oy = v3_dot(py, ray.o);
     for (uint i = 0; i < count; i++) {
         real1 x = scene->listed_vertices[3 * i], y = scene->listed_vertices[3 * i + 1], z = scene->listed_vertices[3 * i + 2];
         if (OPAL_HAS_tree) { // to the bit what intersect_block makes of a vertex, or rays leak between its triangles and these
@@ -328,68 +327,64 @@ static void view_listed(const Scene *scene, Ray ray, uint count, ListedView *vie
             real along = s.x ? d.x : s.y ? d.y : d.z;
             view->x[i] = mul_add(-s.shear_x, along, s.x ? d.y : s.y ? d.z : d.x);
             view->y[i] = mul_add(-s.shear_y, along, s.x ? d.z : s.y ? d.x : d.y);
-            view->z[i] = along * s.scale_z;
         } else {
             view->x[i] = mul_add(px.x, (real)(x), mul_add(px.y, (real)(y), mul_add(px.z, (real)(z), -ox)));
             view->y[i] = mul_add(py.x, (real)(x), mul_add(py.y, (real)(y), mul_add(py.z, (real)(z), -oy)));
-            view->z[i] = mul_add(pz.x, (real)(x), mul_add(pz.y, (real)(y), mul_add(pz.z, (real)(z), -oz)));
         }
     }
 }
 
-// A face in that view: inside, and the signed sums that give t = distance / determinant and the barycentric weights b / determinant of B,
-// c / determinant of C in the triangle that is hit, A B C or `beyond` B C, D C B.
-typedef struct { real b, c, determinant, distance; mask inside, beyond; } FaceTest;
+// A face in that view: whether the ray's line meets it, at t = distance / determinant with determinant >= 0, and on which side of B C.
+typedef struct { real distance, determinant; mask inside, beyond; } FaceTest;
 
-static FaceTest face_test(const ListedView *view, global const ListedFace *face) {
+// Whether a face is met its corners decide, so that none is missed between two faces; where, its plane, which is less work and enough to tell
+// which is the nearest.
+static FaceTest face_test(const ListedView *view, Ray ray, global const ListedFace *face) {
     uint i = face->corner[0], j = face->corner[1], k = face->corner[2], l = face->corner[3];
     real ab = lanes_edge(view->x[i], view->y[i], view->x[j], view->y[j]);
     real bd = lanes_edge(view->x[j], view->y[j], view->x[l], view->y[l]);
     real dc = lanes_edge(view->x[l], view->y[l], view->x[k], view->y[k]);
     real ca = lanes_edge(view->x[k], view->y[k], view->x[i], view->y[i]);
     real bc = lanes_edge(view->x[j], view->y[j], view->x[k], view->y[k]);
-    mask inside = real_min(real_min(ab, ca), real_min(bd, dc)) >= 0 | real_max(real_max(ab, ca), real_max(bd, dc)) <= 0;
-    // One sign for all: then ratios compare by products, without a division a face.
-    real sign = copysign((real)(1), ab + bd + dc + ca);
-    mask beyond = bc * sign < 0;
-    real a = fabs(bc), b = sign * (beyond ? dc : ca), c = sign * (beyond ? bd : ab);
-    FaceTest test = {b, c, a + (b + c), mul_add(a, beyond ? view->z[l] : view->z[i], mul_add(b, view->z[j], c * view->z[k])), inside, beyond};
+    mask positive = real_min(real_min(ab, ca), real_min(bd, dc)) >= 0, negative = real_max(real_max(ab, ca), real_max(bd, dc)) <= 0;
+    real1 x = face->normal[0], y = face->normal[1], z = face->normal[2];
+    real distance = mul_add((real)(-x), ray.o.x, mul_add((real)(-y), ray.o.y, mul_add((real)(-z), ray.o.z, (real)(face->along))));
+    real determinant = mul_add((real)(x), ray.d.x, mul_add((real)(y), ray.d.y, (real)(z) * ray.d.z));
+    FaceTest test = {turned_as(distance, determinant), fabs(determinant), positive | negative, positive ? bc < 0 : bc > 0};
     return test;
 }
 
-// The nearest of the listed faces so far, as FaceTest has it.
-typedef struct { real distance, determinant, b, c; uints triangle; } NearestFace; // triangle: 2 i, or 2 i + 1 for D C B of face i
+// The nearest of the listed faces so far, as FaceTest has it. triangle: 2 i, or 2 i + 1 for D C B of face i
+typedef struct { real distance, determinant; uints triangle; } NearestFace;
 
-static void prefer(NearestFace *best, mask candidate, real distance, real determinant, real b, real c, uints triangle) {
+static void prefer(NearestFace *best, mask candidate, real distance, real determinant, uints triangle) {
+    // By products, without a division a face.
     mask nearer = candidate & (distance * best->determinant < best->distance * determinant);
     best->distance = nearer ? distance : best->distance;
     best->determinant = nearer ? determinant : best->determinant;
-    best->b = nearer ? b : best->b;
-    best->c = nearer ? c : best->c;
     best->triangle = uints_pick(nearer, triangle, best->triangle);
 }
 
 static void try_face(const Scene *scene, const ListedView *view, Ray ray, uint i, NearestFace *best) {
-    FaceTest test = face_test(view, scene->listed_faces + i);
-    prefer(best, test.inside & (test.distance > ray.tmin * test.determinant), test.distance, test.determinant, test.b, test.c,
+    FaceTest test = face_test(view, ray, scene->listed_faces + i);
+    prefer(best, test.inside & (test.distance > ray.tmin * test.determinant), test.distance, test.determinant,
            uints_pick(test.beyond, (uints)(2 * i + 1), (uints)(2 * i)));
 }
 
 // Two halves are searched side by side: one comparison waits for the one before.
-static Hit listed_closest(const Scene *scene, Ray ray, mask live) {
+static Hit listed_closest(const Scene *scene, Ray ray) {
     ListedView view;
     view_listed(scene, ray, scene->settings->listed.vertices, &view);
-    NearestFace best = {ray.tmax, (real)(1), (real)(0), (real)(0), (uints)(OPAL_NONE)}, other = best;
+    NearestFace best = {ray.tmax, (real)(1), (uints)(OPAL_NONE)}, other = best;
     uint count = scene->settings->listed.faces, i = 0;
     for (; i + 1 < count; i += 2) {
         try_face(scene, &view, ray, i, &best);
         try_face(scene, &view, ray, i + 1, &other);
     }
     if (i < count) try_face(scene, &view, ray, i, &best);
-    prefer(&best, ALL_LANES, other.distance, other.determinant, other.b, other.c, other.triangle);
-    real reciprocal = 1 / best.determinant, b = best.b * reciprocal, c = best.c * reciprocal;
-    mask found = to_mask(best.triangle != OPAL_NONE), beyond = found & to_mask((best.triangle & 1u) != 0u);
-    Hit hit = {best.distance * reciprocal, beyond ? c : b, beyond ? b : c,
+    prefer(&best, ALL_LANES, other.distance, other.determinant, other.triangle);
+    mask found = to_mask(best.triangle != OPAL_NONE);
+    Hit hit = {best.distance / best.determinant, (real)(0), (real)(0),
                uints_pick(found, scene->settings->listed_slot + best.triangle, (uints)(OPAL_NONE))};
     return hit;
 }
@@ -400,7 +395,7 @@ static mask listed_any(const Scene *scene, Ray ray, FaceRange among, mask live) 
     view_listed(scene, ray, among.vertices, &view);
     mask blocked = !live;
     for (uint i = 0; i < among.faces; i++) {
-        FaceTest test = face_test(&view, scene->listed_faces + i);
+        FaceTest test = face_test(&view, ray, scene->listed_faces + i);
         blocked = blocked | (test.inside & (test.distance > ray.tmin * test.determinant) & (test.distance < ray.tmax * test.determinant));
     }
     return blocked & live;
@@ -409,7 +404,7 @@ static mask listed_any(const Scene *scene, Ray ray, FaceRange among, mask live) 
 // The nearest hit of each live lane.
 static Hit closest_hit(const Scene *scene, Ray ray, mask live) {
     Hit hit = {ray.tmax, (real)(0), (real)(0), (uints)(OPAL_NONE)};
-    if (OPAL_HAS_listed) hit = listed_closest(scene, ray, live);
+    if (OPAL_HAS_listed) hit = listed_closest(scene, ray);
     if (!OPAL_HAS_tree) return hit;
     ray.tmax = hit.t;
     LaneRays rays;

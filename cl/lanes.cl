@@ -100,6 +100,7 @@ typedef WIDE(int) ints;
 typedef WIDE(uint) uints;
 
 #define real_bits(x) CAT(as_, WIDE(MASK_NAME))(x)
+#define real_of_bits(i) CAT(as_, WIDE(REAL_NAME))(i)
 #define to_real(i) CAT(convert_, WIDE(REAL_NAME))(i)
 #define to_uints(x) CAT(convert_, WIDE(uint))(x)
 
@@ -136,6 +137,9 @@ static int count_lanes(mask m) { return (int)popcount(lanes_of(m)); }
 
 static uints uints_pick(mask m, uints yes, uints no) { return to_ints(m) ? yes : no; }
 static v3 v3_pick(mask m, v3 yes, v3 no) { return v3_of(m ? yes.x : no.x, m ? yes.y : no.y, m ? yes.z : no.z); }
+
+// a, or -a where s is negative.
+static real turned_as(real a, real s) { return real_of_bits(real_bits(a) ^ (real_bits(s) & ~NO_KEY)); }
 
 // Comparisons that leave minps and maxps alone: NaN in a is dropped, NaN in b stays.
 static real8 real8_min(real8 a, real8 b) { return a < b ? a : b; }

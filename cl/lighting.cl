@@ -21,7 +21,7 @@ static real mis_weight(const Scene *scene, real ratio) {
 }
 
 // Radiance that the surface emits towards the viewer, weighted by how else it could have been found.
-static v3 emitted(const Scene *scene, const Path *path, Surface s, Hit hit, mask found) {
+static v3 emitted(const Scene *scene, const Path *path, Surface s, mask found) {
     v3 none = v3_all((real)(0));
     if (EMITTER_KINDS == 0) return none;
     mask shining = found & to_mask(s.emitter != OPAL_NONE) & (s.wi.z > 0);
@@ -32,7 +32,7 @@ static v3 emitted(const Scene *scene, const Path *path, Surface s, Hit hit, mask
     if (CHOSEN(scene, lighting, mis)) {
         // Both densities over solid angle; the light's is turned by distance^2 / cosine.
         real cosine = fabs(v3_dot(s.normal, path->ray.d));
-        real ratio = emitter_area_pdf(scene, id, s.area) * square(hit.t) / (cosine * path->pdf);
+        real ratio = emitter_area_pdf(scene, id, s.area) * square(s.t) / (cosine * path->pdf);
         radiance = v3_scale(radiance, path->direct ? (real)(1) : mis_weight(scene, ratio));
     }
     return v3_pick(shining, radiance, none);

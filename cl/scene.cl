@@ -42,8 +42,8 @@ typedef struct {
     real tmin, tmax;
 } Ray;
 
-// The nearest hit of each lane: its distance, barycentric weights of corners 1 and 2, and the triangle's slot
-// (block * 8 + place); slot = OPAL_NONE: none.
+// The nearest hit of each lane: its distance, barycentric weights of corners 1 and 2, and the triangle's slot (block * 8 + place); slot =
+// OPAL_NONE: none. Of listed triangles t is as good as their planes' roundings, and u and v are not set: surface_at has all three.
 typedef struct {
     real t, u, v;
     uints slot;

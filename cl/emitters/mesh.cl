@@ -19,7 +19,7 @@ static EmitterSample emitter_mesh_sample(const Scene *scene, uints id, v2 point,
     EmitterSample s;
     s.p = v3_mad(e1, u, v3_mad(e2, v, p0));
     s.normal = v3_scale(n, inverse_length);
-    s.facing = shading_normal(scene, triangle_id(scene, slot), u, v, s.normal);
+    s.facing = shading_normal(scene, corner_normals(scene, triangle_id(scene, slot)), u, v, s.normal);
     s.area = CHOSEN(scene, triangle_choice, uniform) ? R(0.5) * length2 * inverse_length * to_real(count)
                                                      : GATHER(real, scene->emitters, id, .area);
     s.margin = surface_margin(p0, p1, p2);

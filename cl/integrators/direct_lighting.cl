@@ -6,7 +6,7 @@ static mask direct_lighting_step(const Scene *scene, Path *path, Hit hit, mask l
     mask found = live & to_mask(hit.slot != OPAL_NONE);
     if (!ANY(found)) return found;
     Surface s = surface_at(scene, path->ray, hit, found);
-    path->radiance = v3_add(path->radiance, v3_mul(path->throughput, emitted(scene, path, s, hit, found)));
+    path->radiance = v3_add(path->radiance, v3_mul(path->throughput, emitted(scene, path, s, found)));
 
     // The first surface, if it is no light, gathers direct light.
     mask lit = found & to_mask(path->depth == 1u) & to_mask(s.emitter == OPAL_NONE) & to_mask(path->depth < scene->settings->max_depth);

@@ -6,7 +6,7 @@ static mask path_step(const Scene *scene, Path *path, Hit hit, mask live) {
     Surface s = surface_at(scene, path->ray, hit, found);
 
     // Light that was hit
-    path->radiance = v3_add(path->radiance, v3_mul(path->throughput, emitted(scene, path, s, hit, found)));
+    path->radiance = v3_add(path->radiance, v3_mul(path->throughput, emitted(scene, path, s, found)));
     found = found & to_mask(path->depth < scene->settings->max_depth);
     if (!ANY(found)) return found;
 

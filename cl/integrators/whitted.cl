@@ -6,7 +6,7 @@ static mask whitted_step(const Scene *scene, Path *path, Hit hit, mask live) {
     mask found = live & to_mask(hit.slot != OPAL_NONE);
     if (!ANY(found)) return found;
     Surface s = surface_at(scene, path->ray, hit, found);
-    path->radiance = v3_add(path->radiance, v3_mul(path->throughput, emitted(scene, path, s, hit, found)));
+    path->radiance = v3_add(path->radiance, v3_mul(path->throughput, emitted(scene, path, s, found)));
     found = found & to_mask(path->depth < scene->settings->max_depth);
     mask specular = found & bsdf_is_discrete(scene, s.bsdf);
     path->radiance = v3_add(path->radiance, unless_blocked(scene, sample_light(scene, path, s, found & !specular)));

@@ -110,9 +110,9 @@ kernel void trace(SCENE_PARAMETERS, global const float *rays, global float *out,
     real density = 0;
     if (EMITTER_KINDS > 0 && ANY(shining))
         density = shining ? emitter_area_pdf(&scene, uints_pick(shining, s.emitter, (uints)(0)), s.area) : density;
-    put(out, HIT_T, stride, base, hit.t);
-    put(out, HIT_U, stride, base, hit.u);
-    put(out, HIT_V, stride, base, hit.v);
+    put(out, HIT_T, stride, base, found ? s.t : hit.t);
+    put(out, HIT_U, stride, base, s.u);
+    put(out, HIT_V, stride, base, s.v);
     put_uints(out, HIT_SLOT, stride, base, hit.slot);
     put(out, HIT_ANY, stride, base, any_hit(&scene, ray, ALL_LANES) ? (real)(1) : (real)(0));
     put_uints(out, HIT_EMITTER, stride, base, uints_pick(found, s.emitter, (uints)(OPAL_NONE)));

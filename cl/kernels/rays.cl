@@ -102,9 +102,10 @@ kernel void closest_hits(SCENE_PARAMETERS, global const float *rays, global floa
         Hit hit = closest_hit(&scene, ray, live);
         mask found = to_mask(hit.slot != OPAL_NONE) & live;
         uints id = triangle_id(&scene, uints_pick(found, hit.slot, (uints)(0)));
-        put(hits, TRACE_T, stride, base, hit.t);
-        put(hits, TRACE_U, stride, base, hit.u);
-        put(hits, TRACE_V, stride, base, hit.v);
+        Surface s = surface_at(&scene, ray, hit, found);
+        put(hits, TRACE_T, stride, base, found ? s.t : hit.t);
+        put(hits, TRACE_U, stride, base, s.u);
+        put(hits, TRACE_V, stride, base, s.v);
         put_uints(hits, TRACE_TRIANGLE, stride, base, uints_pick(found, id, (uints)(OPAL_NONE)));
     )
 }

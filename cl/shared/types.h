@@ -40,12 +40,13 @@ typedef struct {
 } Triangle;
 OPAL_SIZE_CHECK(Triangle, 16);
 
-// A listed face, which is tested against all lanes at once: a triangle A B C, or a convex quadrilateral A B D C that stands for the
+// A listed face, which is tested against all lanes at once: a triangle A B C, or a plane convex quadrilateral A B D C that stands for the
 // triangles A B C and D C B. Face i has the slots listed_slot + 2 i and, for D C B, the next one.
 typedef struct {
-    uint corner[4];  // A, B, C, and D or B again: indices into the listed vertices
+    uint corner[4];         // A, B, C, and D or B again: indices into the listed vertices
+    float normal[3], along; // unit, and how far along it the plane is: normal . p of its points p
 } ListedFace;
-OPAL_SIZE_CHECK(ListedFace, 16);
+OPAL_SIZE_CHECK(ListedFace, 32);
 
 // The first so many listed faces, and the vertices that they need.
 typedef struct {

@@ -75,6 +75,16 @@ Face make_face(uint first, uint second, TriangleSoup &soup, std::vector<Triangle
     return {first, OPAL_NONE};
 }
 
+// The plane of A B D C: of its two diagonals, through its middle. Where it is along the normal is asked of the normal that was rounded.
+void set_plane(const Point (&corners)[4], ListedFace &face) {
+    const Vec3 n = cross(vec3(corners[3]) - vec3(corners[0]), vec3(corners[2]) - vec3(corners[1])), unit = n * (1 / length(n));
+    face.normal[0] = float(unit.x), face.normal[1] = float(unit.y), face.normal[2] = float(unit.z);
+    double along = 0;
+    for (const Point &p : corners)
+        along += dot(vec3(p), {face.normal[0], face.normal[1], face.normal[2]}) / 4;
+    face.along = float(along);
+}
+
 // Where points lie beside the plane of a b c.
 class Sides {
 public:
@@ -184,14 +194,17 @@ void list_faces(const TriangleSoup &soup, std::vector<Face> listed, const std::v
     const auto idle = std::stable_partition(listed.begin(), listed.end(), [&](const Face &face) { return !never_blocks(face, soup, lights); });
     scene.settings.listed_slot = uint(scene.blocks.size()) * 8;
     std::map<Point, uint> vertices;
-    const auto at = [&](uint id, size_t corner) {
-        return vertices.try_emplace(soup.vertices[soup.corners[id][corner]], uint(vertices.size())).first->second;
-    };
     std::vector<uint> shapes, ids; // by slot: a triangle of its shape, and of its id
     for (const Face &face : listed) {
         const bool pair = face.second != OPAL_NONE;
-        const uint a = at(face.first, 0), b = at(face.first, 1), c = at(face.first, 2);
-        scene.listed_faces.push_back({{a, b, c, pair ? at(face.second, 0) : b}});
+        ListedFace record{};
+        Point corners[4]; // A, B, C, and D or B again
+        for (size_t i = 0; i < 4; i++) {
+            corners[i] = soup.vertices[i < 3 ? soup.corners[face.first][i] : pair ? soup.corners[face.second][0] : soup.corners[face.first][1]];
+            record.corner[i] = vertices.try_emplace(corners[i], uint(vertices.size())).first->second;
+        }
+        set_plane(corners, record);
+        scene.listed_faces.push_back(record);
         scene.listed_triangles += pair ? 2 : 1;
         shapes.insert(shapes.end(), {face.first, pair ? face.second : face.first});
         ids.insert(ids.end(), {face.first, face.second});

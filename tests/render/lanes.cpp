@@ -34,9 +34,10 @@ Difference difference(const Film &a, const Film &b) {
     return d;
 }
 
-Film at_lanes(const SceneDescription &scene, int lanes) {
+Film at_lanes(const SceneDescription &scene, int lanes, MathMode math = MathMode::precise) {
     Shot shot;
     shot.lanes = lanes;
+    shot.math = math;
     return render(scene, 8, test_seed(50), shot);
 }
 
@@ -104,11 +105,13 @@ TEST_CASE("The general kernel renders what the specialised ones do", "[lanes]") 
                                                {{"integrator", "direct_lighting"}, {"lighting", "emitter"}, {"emitter-choice", "power"}},
                                                {{"integrator", "path"}, {"lighting", "bsdf"}, {"rr", "fixed"}},
                                                {{"integrator", "path"}, {"lighting", "mis"}, {"triangle-choice", "uniform"}, {"sampler", "sobol"}}};
+    // In double, where the device has it: the general kernel lists no faces, and what it rounds otherwise long paths through glass magnify.
+    const MathMode math = device().info.fp64 ? MathMode::double_precision : MathMode::precise;
     SceneDescription scene = large_gallery(25, 21); // with a tree, as the general kernel has
     for (Overrides how : strategies) {
-        const Film special = at_lanes(strategy_of(scene, how), 0);
+        const Film special = at_lanes(strategy_of(scene, how), 0, math);
         how["specialise"] = "off";
-        const Difference d = difference(special, at_lanes(strategy_of(scene, how), 0));
+        const Difference d = difference(special, at_lanes(strategy_of(scene, how), 0, math));
         INFO(how.at("integrator") << ": " << d.pixels_off << " pixels off, means differ by " << d.means);
         CHECK(d.pixels_off <= 3);
         CHECK(d.means < 1e-6);
