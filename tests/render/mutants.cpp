@@ -8,7 +8,7 @@ using namespace opal::test;
 
 namespace {
 
-const std::string light_hit = "v3_mul(path->throughput, emitted(scene, path, s, hit, found))";
+const std::string light_hit = "v3_mul(path->throughput, emitted(scene, path, s, found))";
 const std::string first_only = "to_real(uints_pick(to_mask(path->depth == 1u), (uints)(2), (uints)(1)))";
 
 const std::vector<Control> furnaces = {
@@ -26,14 +26,14 @@ const std::vector<Control> lights = {
     {{"no cosine at the light", "lighting.cl", "real per_density = cosine * square(inverse_distance)", "real per_density = square(inverse_distance)"}, "triangle light", check_triangle_light},
     {{"no cosine at the receiver", "lighting.cl", "emitter_radiance(scene, id)), wo.z * per_density)", "emitter_radiance(scene, id)), per_density)"}, "triangle light", check_triangle_light},
     {{"distance instead of its square", "lighting.cl", "cosine * square(inverse_distance) *", "cosine * inverse_distance *"}, "triangle light", check_triangle_light},
-    {{"MIS weighs area against solid angle where a light is hit", "lighting.cl", "* square(hit.t) / (cosine * path->pdf)", "/ path->pdf"}, "triangle light", check_triangle_light},
+    {{"MIS weighs area against solid angle where a light is hit", "lighting.cl", "* square(s.t) / (cosine * path->pdf)", "/ path->pdf"}, "triangle light", check_triangle_light},
     {{"MIS weighs area against solid angle where a light is sampled", "lighting.cl", "bsdf_density * per_density)", "bsdf_density * light.area)"}, "triangle light", check_triangle_light},
     {{"lights sampled from behind", "lighting.cl", "(v3_dot(light.facing, to_light) < 0)", "(v3_dot(light.facing, to_light) != 0)"}, "triangle light", check_triangle_light},
     {{"lights seen from behind", "lighting.cl", "to_mask(s.emitter != OPAL_NONE) & (s.wi.z > 0)", "to_mask(s.emitter != OPAL_NONE)"}, "triangle light", check_triangle_light},
     {{"one sample counted once", "integrators/direct_lighting.cl", "discrete ? (real)(1) : (real)(2)", "(real)(1)"}, "triangle light", check_triangle_light},
     {{"a point light twice as dense", "emitters/point.cl", "s.area = 1;", "s.area = 0.5f;"}, "point light", check_point_light},
     {{"simple by the distance", "integrators/simple.cl", "cosine / distance2", "cosine * rsqrt(distance2)"}, "point light", check_point_light},
-    {{"weights of the normals exchanged", "surface.cl", "v3_mad(vertex_normal(scene, n1), u, v3_mad(vertex_normal(scene, n2), v,", "v3_mad(vertex_normal(scene, n1), v, v3_mad(vertex_normal(scene, n2), u,"},
+    {{"one corner's normal taken twice", "surface.cl", "v3_mad(vertex_normal(scene, corners.index[1]), u,", "v3_mad(vertex_normal(scene, corners.index[2]), u,"},
      "normals", check_smooth_normals},
 };
 

@@ -12,7 +12,7 @@ using namespace opal::test;
 
 namespace {
 
-const std::string light_hit = "v3_mul(path->throughput, emitted(scene, path, s, hit, found))";
+const std::string light_hit = "v3_mul(path->throughput, emitted(scene, path, s, found))";
 const std::string heuristic = "1 / (1 + (CHOSEN(scene, mis, power) ? ratio * ratio : ratio))";
 
 const std::vector<Mutant> planted = {
