@@ -202,19 +202,15 @@ std::size_t halve(References set) {
     return half;
 }
 
-BinaryTree build_binary_tree(const TriangleSoup &soup) {
-    assert(!soup.corners.empty());
+BinaryTree build_binary_tree(std::vector<Reference> references) {
+    assert(!references.empty());
+    const uint count = uint(references.size());
     BinaryTree tree;
-    tree.references.resize(soup.corners.size());
-    for (uint id = 0; id < soup.corners.size(); id++) {
-        tree.references[id] = {Box::empty(), id};
-        for (uint vertex : soup.corners[id])
-            tree.references[id].box.add(soup.vertices[vertex]);
-    }
+    tree.references = std::move(references);
     // Room for the worst case; pages that are never written cost nothing.
-    tree.nodes = std::make_unique_for_overwrite<BinaryNode[]>(2 * soup.corners.size());
+    tree.nodes = std::make_unique_for_overwrite<BinaryNode[]>(2 * std::size_t(count));
     Builder builder(tree);
-    builder.start(0, 0, uint(soup.corners.size()));
+    builder.start(0, 0, count);
     builder.build(0, 0);
     tree.node_count = builder.node_count;
     return tree;

@@ -1,20 +1,14 @@
 // A binary bounding volume hierarchy by the surface area heuristic: what the 8-wide tree is collapsed from.
 #pragma once
 
-#include "flatten/box.h"
-#include "flatten/bvh.h"
+#include "flatten/references.h"
 
 #include <memory>
 #include <span>
 
 namespace opal {
 
-constexpr uint BLOCK_SIZE = 8; // triangles of a leaf at most
-
-struct Reference {
-    Box box;
-    uint triangle;
-};
+constexpr uint BLOCK_SIZE = 8; // references of a leaf at most
 
 struct BinaryNode {
     Box box;
@@ -28,9 +22,9 @@ struct BinaryTree {
     std::vector<Reference> references;
 };
 
-// Costs are counted in blocks: ceil(n / BLOCK_SIZE) times the area. Leaves hold 1 to BLOCK_SIZE triangles; smaller sets
-// are split where that makes the areas of both parts together smaller. There is at least one triangle.
-BinaryTree build_binary_tree(const TriangleSoup &soup);
+// Costs are counted in blocks: ceil(n / BLOCK_SIZE) times the area. Leaves hold 1 to BLOCK_SIZE references; smaller sets
+// are split where that makes the areas of both parts together smaller. There is at least one reference.
+BinaryTree build_binary_tree(std::vector<Reference> references);
 
 // Orders the set into halves along the longest axis of its middles; returns the size of the first one, the larger by
 // one.

@@ -25,7 +25,7 @@ double half_area(const Box &box) {
 Bvh build_bvh(const TriangleSoup &soup) {
     if (soup.corners.empty())
         return {{empty_node()}, pack_blocks(soup)};
-    BinaryTree tree = build_binary_tree(soup);
+    BinaryTree tree = build_binary_tree(references_of(soup));
     optimise_by_reinsertion(tree);
     return collapse(tree, soup);
 }

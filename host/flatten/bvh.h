@@ -24,7 +24,7 @@ constexpr double NODE_COST = 1, BLOCK_COST = 1;
 
 // Binary tree by the surface area heuristic, improved by reinsertion, collapsed to 8 children by dynamic programming
 // (Ylitie, Karras, Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", section 3.2).
-// Every triangle is in one place of one block; levels_of(bvh) <= OPAL_LEVELS. Without triangles: a root without children, one
+// Every triangle is in a block, or its parts are in several, where references_of says so; levels_of(bvh) <= OPAL_LEVELS. Without triangles: a root without children, one
 // block of none.
 Bvh build_bvh(const TriangleSoup &soup);
 

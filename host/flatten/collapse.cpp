@@ -132,6 +132,9 @@ private:
         std::array<uint, BLOCK_SIZE> ids;
         for (uint i = 0; i < count; i++)
             ids[i] = tree.references[first + i].triangle;
+        // Parts of a triangle that came together are one again.
+        std::sort(ids.begin(), ids.begin() + count);
+        count = uint(std::unique(ids.begin(), ids.begin() + count) - ids.begin());
         bvh.blocks.push_back(pack_block(soup, ids.data(), count));
         return OPAL_LEAF | uint(bvh.blocks.size() - 1);
     }

@@ -1,0 +1,22 @@
+// What a tree is built over: boxes of triangles, or of parts of them.
+#pragma once
+
+#include "flatten/box.h"
+#include "flatten/bvh.h"
+
+namespace opal {
+
+struct Reference {
+    Box box;
+    uint triangle;
+};
+
+// The box of every triangle.
+std::vector<Reference> whole_triangles(const TriangleSoup &soup);
+
+// The same where triangles fill their boxes. Where most of the boxes' area is empty, as long triangles lie askew, the worst ones are cut into boxes
+// of parts, each at least once (Ernst and Greiner 2007, "Early Split Clipping for Bounding Volume Hierarchies"). A point of a triangle is in one of its
+// boxes.
+std::vector<Reference> references_of(const TriangleSoup &soup);
+
+} // namespace opal
