@@ -10,7 +10,7 @@ namespace {
 
 constexpr int BINS = 32;
 constexpr std::size_t SWEEP_SIZE = 64;     // up to here every split is tried
-constexpr std::size_t THREAD_SIZE = 30000; // from here on a part may get a thread of its own
+constexpr std::size_t THREAD_SIZE = 15000; // from here on both parts may get threads of their own
 constexpr int DEEPEST_SAH = 90;            // from this depth on splits halve the set, so that depth stays bounded
 
 using References = std::span<Reference>;
@@ -147,12 +147,14 @@ public:
         node.left = node_count.fetch_add(2);
         start(node.left, node.first, uint(left_count));
         start(node.left + 1, node.first + uint(left_count), node.count - uint(left_count));
-        const uint left = node.left;
-        if (node.count >= THREAD_SIZE && take_thread()) {
-            std::thread other([this, left, depth] { build(left, depth + 1); });
+        const uint left = node.left, smaller = std::min(uint(left_count), node.count - uint(left_count));
+        if (smaller >= THREAD_SIZE && take_thread()) {
+            std::thread other([this, left, depth] {
+                build(left, depth + 1);
+                idle_threads++;
+            });
             build(left + 1, depth + 1);
             other.join();
-            idle_threads++;
         } else {
             build(left, depth + 1);
             build(left + 1, depth + 1);

@@ -35,6 +35,7 @@ public:
     }
 
     Bvh emit() {
+        bvh.blocks.reserve(tree.node_count / 2 + 1); // room for the worst case
         const uint root = emit(0, OPAL_LEVELS);
         if (root & OPAL_LEAF)
             set_child(add_node(), 0, tree.nodes[0].box, root);

@@ -63,11 +63,12 @@ private:
         bool continued = last != std::string_view::npos && row[last] == '\\' && position_ < text_.size();
         if (continued)
             row = row.substr(0, last);
-        constexpr std::string_view blanks = " \t\r";
-        for (size_t start = row.find_first_not_of(blanks); start != std::string_view::npos;) {
-            size_t stop = std::min(row.find_first_of(blanks, start), row.size());
-            words.push_back(row.substr(start, stop - start));
-            start = row.find_first_not_of(blanks, stop);
+        // Not by find_first_of, which calls memchr for every character.
+        const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+        for (auto start = std::find_if_not(row.begin(), row.end(), blank); start != row.end();) {
+            const auto stop = std::find_if(start, row.end(), blank);
+            words.emplace_back(start, stop);
+            start = std::find_if_not(stop, row.end(), blank);
         }
         return continued;
     }
@@ -197,15 +198,16 @@ void to_world_space(ObjFile &obj, const Transform &to_world) {
 // The height over the longest edge is below what rounding a coordinate to double may make of nothing.
 bool has_area(const ObjFile &obj, const std::array<TriangleMesh::Corner, 3> &triangle) {
     Vec3 p[3];
-    double largest = 0, longest = 0;
+    double largest = 0, longest2 = 0;
     for (int i = 0; i < 3; ++i) {
         p[i] = obj.positions[triangle[i].position];
         largest = std::max({largest, std::abs(p[i].x), std::abs(p[i].y), std::abs(p[i].z)});
     }
     for (int i = 0; i < 3; ++i)
-        longest = std::max(longest, length(p[(i + 1) % 3] - p[i]));
-    double doubled_area = length(cross(p[1] - p[0], p[2] - p[0]));
-    return doubled_area > 4 * std::numeric_limits<double>::epsilon() * largest * longest;
+        longest2 = std::max(longest2, dot(p[(i + 1) % 3] - p[i], p[(i + 1) % 3] - p[i]));
+    const Vec3 doubled_area = cross(p[1] - p[0], p[2] - p[0]);
+    const double rounding = 4 * std::numeric_limits<double>::epsilon() * largest;
+    return dot(doubled_area, doubled_area) > rounding * rounding * longest2; // squares of float's range stay within double's
 }
 
 std::vector<std::array<TriangleMesh::Corner, 3>> make_triangles(ObjFile &obj) {

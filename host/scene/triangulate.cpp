@@ -86,8 +86,10 @@ bool is_convex(const std::vector<Point2> &points) {
 std::vector<std::array<unsigned, 3>> triangulate(const std::vector<Vec3> &corners) {
     std::vector<std::array<unsigned, 3>> triangles;
     unsigned count = static_cast<unsigned>(corners.size());
-    std::vector<Point2> points = projected(corners);
-    if (count <= 3 || is_convex(points)) {
+    std::vector<Point2> points;
+    if (count > 3)
+        points = projected(corners);
+    if (is_convex(points)) {
         for (unsigned i = 2; i < count; ++i)
             triangles.push_back({0, i - 1, i});
         return triangles;
