@@ -9,7 +9,7 @@ namespace opal {
 namespace {
 
 // Triangles are cut where boxes waste more than MOSTLY of their area, until no part wastes more than SHARE of what a triangle did on average. Scenes
-// of balls, furniture and terrain waste 4 to 36 %, and lose if they are cut; rooms with slanted legs, and any room that is turned, 78 to 96 %.
+// of balls, furniture and terrain waste 4 to 36 %, and lose if they are cut; veach_room 78 %, and 96 % when it is turned out of the axes.
 constexpr double MOSTLY = 0.5, SHARE = 0.5;
 
 // What a box has of half its surface beyond that of a parallelogram's shadows along the axes; twice_area: the parallelogram's normal of that length.

@@ -14,9 +14,9 @@ struct Reference {
 // The box of every triangle.
 std::vector<Reference> whole_triangles(const TriangleSoup &soup);
 
-// The same where triangles fill their boxes. Where most of the boxes' area is empty, as long triangles lie askew, the worst ones are cut into boxes
-// of parts, each at least once (Ernst and Greiner 2007, "Early Split Clipping for Bounding Volume Hierarchies"). A point of a triangle is in one of its
-// boxes.
+// The same where triangles fill their boxes. Where most of the boxes' area is empty, as where long triangles lie askew, those that waste the most
+// have a box for each of several parts (Ernst and Greiner 2007, "Early Split Clipping for Bounding Volume Hierarchies"): every point of a triangle
+// is in one of its boxes.
 std::vector<Reference> references_of(const TriangleSoup &soup);
 
 } // namespace opal
