@@ -400,7 +400,7 @@ static mask listed_any(const Scene *scene, Ray ray, FaceRange among, mask live) 
     }
     return blocked & live;
 }
-
+#include "one_lane/walk.cl"
 // The nearest hit of each live lane.
 static Hit closest_hit(const Scene *scene, Ray ray, mask live) {
     Hit hit = {ray.tmax, (real)(0), (real)(0), (uints)(OPAL_NONE)};

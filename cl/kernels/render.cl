@@ -117,7 +117,7 @@ static mask refill(const Scene *scene, Queue *queue, Starts *starts, Path *path,
     path->sampler.key1 = uints_pick(start, LOAD(uints, to->key1), path->sampler.key1);
     return start;
 }
-
+#include "one_lane/starts.cl"
 // Puts the radiance of the paths that ended into their slots; where tests are counted, the rays, shadow rays and rounds since a path
 // ended before instead, into the slot of the first.
 static void retire(const Scene *scene, global float *slots, const Queue *queue, const Path *path, uint ended) {

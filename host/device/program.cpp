@@ -56,7 +56,7 @@ std::string program_text(const Features &features, const BuildOptions &options, 
     OPAL_AXES(OPAL_AXIS_DEFINE)
 #undef OPAL_AXIS_DEFINE
     const bool specialised = features.axes[AXIS_integrator] >= 0; // the general kernel would take half a minute to compile
-    const std::string body = sources.expand(options.kernels);
+    const std::string body = sources.expand(options.kernels, options.lanes);
     return specialised ? text + inline_all + body + inline_end : text + body;
 }
 

@@ -27,9 +27,9 @@ struct Sources {
     std::map<std::string, std::string> files; // "math.cl" -> text
     static const Sources &embedded();
     static Sources from_folder(const std::string &folder);
-    // Text of `file` with every #include "x" expanded once, in place, between #line directives. Error: file:line of an
-    // include that is not there, and what is.
-    std::string expand(const std::string &file) const;
+    // Text of `file` for a kernel of so many lanes, with every #include "x" expanded once, in place, between #line directives. Files
+    // below one_lane/ are left out where there are more lanes. Error: file:line of an include that is not there, and what is.
+    std::string expand(const std::string &file, int lanes) const;
 };
 
 // Defines (every feature, every axis, LANES, OPAL_DOUBLE, OPAL_FAST, OPAL_COUNT_TESTS, OPAL_TWICE_*) followed by the expanded sources.

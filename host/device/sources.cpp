@@ -36,16 +36,17 @@ std::string names_of(const std::map<std::string, std::string> &files) {
 
 class Expansion {
 public:
-    explicit Expansion(const std::map<std::string, std::string> &files) : files_(files) {}
+    Expansion(const std::map<std::string, std::string> &files, int lanes) : files_(files), lanes_(lanes) {}
 
     void append(const std::string &name, const std::string &asked_from) {
         const auto found = files_.find(name);
         if (found == files_.end())
             throw Error(fmt::format("{}: no file \"{}\" below cl/; available: {}", asked_from, name, names_of(files_)));
-        if (!done_.insert(name).second) {
+        if (left_out(name)) {
             text_ += '\n'; // keeps the place of the directive
             return;
         }
+        done_.insert(name);
         std::istringstream lines(found->second);
         std::string line;
         text_ += fmt::format("#line 1 \"cl/{}\"\n", name);
@@ -56,19 +57,23 @@ public:
     std::string take() { return std::move(text_); }
 
 private:
+    // What is there already, and what only programs of one lane need.
+    bool left_out(const std::string &name) const { return done_.count(name) != 0 || (lanes_ != 1 && name.starts_with("one_lane/")); }
+
     void append_line(const std::string &name, const std::string &line, int number) {
         const std::string include = included_file(line);
         if (include.empty()) {
             text_ += line + '\n';
             return;
         }
-        const bool again = done_.count(include) != 0;
+        const bool expanded = !left_out(include);
         append(include, fmt::format("cl/{}:{}", name, number));
-        if (!again)
+        if (expanded)
             text_ += fmt::format("#line {} \"cl/{}\"\n", number + 1, name);
     }
 
     const std::map<std::string, std::string> &files_;
+    const int lanes_;
     std::set<std::string> done_;
     std::string text_;
 };
@@ -102,8 +107,8 @@ Sources Sources::from_folder(const std::string &folder) {
     return sources;
 }
 
-std::string Sources::expand(const std::string &file) const {
-    Expansion expansion(files);
+std::string Sources::expand(const std::string &file, int lanes) const {
+    Expansion expansion(files, lanes);
     expansion.append(file, "program");
     return expansion.take();
 }

@@ -11,7 +11,7 @@ namespace {
 
 std::string message_of(const Sources &sources, const std::string &file) {
     try {
-        sources.expand(file);
+        sources.expand(file, 4);
     } catch (const Error &error) {
         return error.what();
     }
@@ -26,13 +26,22 @@ TEST_CASE("An include is expanded in place, once, between #line directives", "[s
         {"b.h", "#include \"c.h\"\nb\n"},
         {"c.h", "c\n"},
     }};
-    CHECK(sources.expand("a.cl") == "#line 1 \"cl/a.cl\"\none\n"
+    CHECK(sources.expand("a.cl", 4) == "#line 1 \"cl/a.cl\"\none\n"
                                     "#line 1 \"cl/b.h\"\n"
                                     "#line 1 \"cl/c.h\"\nc\n"
                                     "#line 2 \"cl/b.h\"\nb\n"
                                     "#line 3 \"cl/a.cl\"\ntwo\n"
                                     "\n" // c.h, a second time
                                     "three\n");
+}
+
+TEST_CASE("What only one lane needs leaves an empty line in programs of more", "[sources]") {
+    const Sources sources{{{"a.cl", "one\n#include \"one_lane/b.cl\"\ntwo\n"}, {"one_lane/b.cl", "b\n"}}};
+    CHECK(sources.expand("a.cl", 1) == "#line 1 \"cl/a.cl\"\none\n"
+                                       "#line 1 \"cl/one_lane/b.cl\"\nb\n"
+                                       "#line 3 \"cl/a.cl\"\ntwo\n");
+    for (int lanes : {4, 8, 16})
+        CHECK(sources.expand("a.cl", lanes) == "#line 1 \"cl/a.cl\"\none\n\ntwo\n");
 }
 
 TEST_CASE("A missing include names its place and what there is", "[sources]") {
