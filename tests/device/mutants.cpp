@@ -21,21 +21,33 @@ const std::vector<Control> numbers = {
     {{"the seed is ignored", "rng.cl", "z = (uints)(seed), w", "z = (uints)(seed * 0u), w"}, "independence", check_independence},
 };
 
+constexpr bool of_many_lanes = true;
+
 const std::vector<Control> hits = {
-    {{"children beyond tmin are dropped", "bvh.cl", "} while (w->nearest > w->limit);", "} while (w->nearest > key_of(4 * rays->tmin[w->at.lane] + R(0.3)));"}, "tree", check_tree},
-    {{"any-hit enters one child of each node", "bvh.cl", "w->at.top += w->met != 0;", ""},
+    {{"children beyond tmin are dropped", "bvh.cl", "} while (w->nearest > w->limit);", "} while (w->nearest > key_of(4 * rays->tmin[w->at.lane] + R(0.3)));", of_many_lanes}, "tree", check_tree},
+    {{"any-hit enters one child of each node", "bvh.cl", "w->at.top += w->met != 0;", "", of_many_lanes},
      "tree", check_tree},
-    {{"far bound ignored in leaves", "triangle.cl", "real8 bound = ray->tmax *", "real8 bound = R(1e30) *"}, "tree", check_tree},
-    {{"near bound ignored in leaves", "triangle.cl", "test.distance > ray->tmin * test.determinant ?", "test.distance > 0 ?"}, "tree", check_tree},
-    {{"back faces culled", "triangle.cl", " | real8_max(a, real8_max(b, c)) <= 0", ""}, "tree", check_tree},
-    {{"last hit instead of nearest", "bvh.cl", "candidate & (distance * best->determinant < best->distance * determinant)", "candidate & (distance < R(1e30) * determinant)"}, "tiny", check_tiny},
-    {{"barycentric weights swapped", "surface.cl", "v3_cross(e1, w)", "v3_cross(e2, w)"}, "tiny", check_tiny},
-    {{"a quadrilateral's second triangle taken for its first", "bvh.cl", "positive ? bc < 0 : bc > 0};", "NO_LANES};"}, "tiny", check_tiny},
-    {{"listed faces met from one side only", "bvh.cl", "{turned_as(distance, determinant), fabs(determinant),", "{distance, determinant,"}, "tiny", check_tiny},
-    {{"far bound ignored by any-hit", "bvh.cl", " & (test.distance < ray.tmax * test.determinant));", ");"}, "tiny", check_tiny},
-    {{"edges belong to no triangle", "triangle.cl", "real8_min(a, real8_min(b, c)) >= 0 | real8_max(a, real8_max(b, c)) <= 0", "real8_min(a, real8_min(b, c)) > 0 | real8_max(a, real8_max(b, c)) < 0"},
+    {{"far bound ignored in leaves", "triangle.cl", "real8 bound = ray->tmax *", "real8 bound = R(1e30) *", of_many_lanes}, "tree", check_tree},
+    {{"near bound ignored in leaves", "triangle.cl", "test.distance > ray->tmin * test.determinant ?", "test.distance > 0 ?", of_many_lanes}, "tree", check_tree},
+    {{"back faces culled", "triangle.cl", " | real8_max(a, real8_max(b, c)) <= 0", "", of_many_lanes}, "tree", check_tree},
+    {{"last hit instead of nearest", "bvh.cl", "candidate & (distance * best->determinant < best->distance * determinant)", "candidate & (distance < R(1e30) * determinant)", of_many_lanes}, "tiny", check_tiny},
+    {{"barycentric weights swapped", "surface.cl", "v3_cross(e1, w)", "v3_cross(e2, w)", of_many_lanes}, "tiny", check_tiny},
+    {{"a quadrilateral's second triangle taken for its first", "bvh.cl", "positive ? bc < 0 : bc > 0};", "NO_LANES};", of_many_lanes}, "tiny", check_tiny},
+    {{"listed faces met from one side only", "bvh.cl", "{turned_as(distance, determinant), fabs(determinant),", "{distance, determinant,", of_many_lanes}, "tiny", check_tiny},
+    {{"far bound ignored by any-hit", "bvh.cl", " & (test.distance < ray.tmax * test.determinant));", ");", of_many_lanes}, "tiny", check_tiny},
+    {{"edges belong to no triangle", "triangle.cl", "real8_min(a, real8_min(b, c)) >= 0 | real8_max(a, real8_max(b, c)) <= 0", "real8_min(a, real8_min(b, c)) > 0 | real8_max(a, real8_max(b, c)) < 0", of_many_lanes},
      "watertight", check_watertight},
-    {{"boxes a little small", "bvh.cl", "v3_scale(inverse, (real)(1 + 8 * EPSILON))", "v3_scale(inverse, (real)(1 - 1000 * EPSILON))"}, "watertight", check_watertight},
+    {{"boxes a little small", "bvh.cl", "v3_scale(inverse, (real)(1 + 8 * EPSILON))", "v3_scale(inverse, (real)(1 - 1000 * EPSILON))", of_many_lanes}, "watertight", check_watertight},
+    {{"one lane: a node's other children forgotten", "one_lane/walk.cl", "if (order != NO_CHILDREN) {", "if (order == NO_CHILDREN) {"}, "tree", check_tree},
+    {{"one lane: far bound ignored by any-hit", "one_lane/walk.cl", " || !(test.distance < tmax * test.determinant)) continue;", ") continue;"}, "tree", check_tree},
+    {{"one lane: near bound ignored in leaves", "one_lane/walk.cl", "!(test.distance > r->tmin * test.determinant)", "!(test.distance > 0)"}, "tree", check_tree},
+    {{"one lane: last hit of a block instead of nearest", "one_lane/walk.cl", "if (!(t < r->tmax)) continue;", ""}, "tree", check_tree},
+    {{"one lane: back faces culled", "one_lane/walk.cl", " || fmax(a, fmax(b, c)) <= 0", ""}, "tree", check_tree},
+    {{"one lane: weights of a triangle's corners exchanged", "one_lane/walk.cl", "fabs(sum), fabs(b), fabs(c),", "fabs(sum), fabs(c), fabs(b),"}, "tree", check_tree},
+    {{"one lane: the last of a node's children left out", "one_lane/walk.cl", "uint end = 1u << 3 * count;", "uint end = 1u << 3 * min(count, 3u);"}, "tree", check_tree},
+    {{"one lane: edges belong to no triangle", "one_lane/walk.cl", "fmin(a, fmin(b, c)) >= 0 || fmax(a, fmax(b, c)) <= 0", "fmin(a, fmin(b, c)) > 0 || fmax(a, fmax(b, c)) < 0"},
+     "watertight", check_watertight},
+    {{"one lane: boxes a little small", "one_lane/walk.cl", "v3_scale(inverse, 1 + 8 * EPSILON)", "v3_scale(inverse, 1 - 1000 * EPSILON)"}, "watertight", check_watertight},
 };
 
 const std::vector<Control> densities = {

@@ -48,7 +48,7 @@ TEST_CASE("What computes wrong is found", "[selftest]") {
         {"bsdfs", "bsdfs/microfacet.cl", "(4 * fabs(v3_dot(h, wo)));", "(4.1f * fabs(v3_dot(h, wo)));", "BSDFs: samples"},
         {"bsdfs", "bsdfs/dielectric.cl", "square(boundary.inverse_eta)", "boundary.inverse_eta", "mirror, dielectric"},
         {"lights", "emitters/mesh.cl", "folded ? 1 - point.x", "folded ? point.x", "lights: points"},
-        {"rays", "bvh.cl", "near_x = to_ints(inverse.x < 0)", "near_x = to_ints(inverse.x > 0)", "tree: hits"},
+        {"rays", "one_lane/walk.cl", "near_x = inverse.x < 0", "near_x = inverse.x > 0", "tree: hits"},
         {"images", "lighting.cl", "wo.z * per_density", "per_density", "furnace"},
     };
     for (const Mutant &m : mutants) {

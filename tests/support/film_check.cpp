@@ -81,15 +81,21 @@ Findings check_film(const Sources &sources, unsigned seed) {
 }
 
 Findings check_passes(const Sources &sources, unsigned seed) {
-    std::vector<Film> films;
-    for (unsigned most : {0u, 3u}) {
-        Shot shot;
-        shot.sources = &sources;
-        shot.max_pass_samples = most;
-        films.push_back(render(with(gallery(9, 9), {{"specialise", "off"}}), 17, seed, shot));
+    Findings findings;
+    for (int lanes : tested_lanes()) {
+        std::vector<Film> films;
+        for (unsigned most : {0u, 3u}) {
+            Shot shot;
+            shot.lanes = lanes;
+            shot.sources = &sources;
+            shot.max_pass_samples = most;
+            films.push_back(render(with(gallery(9, 9), {{"specialise", "off"}}), 17, seed, shot));
+        }
+        findings.push_back(exact("sums", films[0].sum == films[1].sum));
+        findings.push_back(exact("squares", films[0].squares == films[1].squares));
+        findings.push_back(exact("counts", films[0].count == films[1].count));
     }
-    return {exact("sums", films[0].sum == films[1].sum), exact("squares", films[0].squares == films[1].squares),
-            exact("counts", films[0].count == films[1].count)};
+    return findings;
 }
 
 } // namespace opal::test

@@ -1,6 +1,7 @@
 #include "support/mutants.h"
 
 #include "base/error.h"
+#include "support/device.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
@@ -23,8 +24,13 @@ Sources mutated(const Sources &sources, const Mutant &mutant) {
 }
 
 void require_all_killed(const std::vector<Control> &controls, unsigned seed) {
-    size_t killed = 0;
+    size_t killed = 0, run = 0;
     for (const Control &control : controls) {
+        if (control.mutant.many_lanes && tested_lanes() == std::vector<int>{1}) {
+            fmt::print("left out, as this device carries one lane: {} (cl/{})\n", control.mutant.name, control.mutant.file);
+            continue;
+        }
+        run++;
         const Sources sources = mutated(Sources::embedded(), control.mutant);
         const Findings findings = control.check(sources, seed);
         const bool dead = rejected(findings);
@@ -35,8 +41,8 @@ void require_all_killed(const std::vector<Control> &controls, unsigned seed) {
         std::fflush(stdout);
         CHECK(dead);
     }
-    fmt::print("{} of {} mutants killed\n", killed, controls.size());
-    CHECK(killed == controls.size());
+    fmt::print("{} of {} mutants killed\n", killed, run);
+    CHECK(killed == run);
 }
 
 } // namespace opal::test
