@@ -53,7 +53,7 @@ const std::vector<Control> films = {
     {{"what is not finite is kept", "film.cl", "x = valid ? x : (real)(0);", ""}, "film", check_film},
     {{"infinity taken for finite", "film.cl", "to_mask((x & all) != all)", "to_mask((x & all) <= all)"}, "film", check_film},
     {{"random numbers by the place in the pass", "kernels/render.cl", "LOAD(uints, paths->sample), scene->settings->seed", "LOAD(uints, paths->sample) - queue->pass_first, scene->settings->seed", true}, "passes", check_passes},
-    {{"one lane: random numbers by the place in the pass", "one_lane/starts.cl", "sample = queue->first_sample + queue->sample;", "sample = queue->first_sample - queue->pass_first + queue->sample;"}, "passes", check_passes},
+    {{"one lane: another seed in each pass", "one_lane/starts.cl", "scene->settings->seed", "scene->settings->seed + queue->pass_first"}, "passes", check_passes},
     {{"filters centred on the pixel's corner", "kernels/render.cl", "filter_1d(settings, offset.x - R(0.5)", "filter_1d(settings, offset.x"}, "filters", check_filters},
     {{"Gaussian not lowered to 0 at its end", "camera.cl", " - exp(falloff * radius * radius)", ""}, "filters", check_filters},
     {{"Mitchell's parts exchanged", "camera.cl", "t < 1 ? inner : outer", "t < 1 ? outer : inner"}, "filters", check_filters},
