@@ -6,10 +6,10 @@
 namespace opal {
 
 RunCommand setup_probe_platform(CLI::App &app) {
-    auto icd = std::make_shared<std::string>();
-    app.add_option("icd", *icd, "The driver's .icd file");
-    return [icd] {
-        print_probe(*icd);
+    auto library = std::make_shared<std::string>();
+    app.add_option("library", *library, "The driver's library");
+    return [library] {
+        print_probe(*library);
         return 0;
     };
 }

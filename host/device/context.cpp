@@ -30,7 +30,8 @@ std::string list_of(const std::vector<DeviceInfo> &devices) {
     for (const DeviceInfo &d : devices)
         lines.push_back(d.problem.empty() ? fmt::format("{} ({}, {})", d.index, d.type, d.name)
                                           : fmt::format("{} ({}: {})", d.index, d.platform, d.problem));
-    return lines.empty() ? "none (is an OpenCL driver installed? Debian: apt-get install pocl-opencl-icd)"
+    return lines.empty() ? "none (is an OpenCL driver installed? Debian: apt-get install pocl-opencl-icd; "
+                           "one without an .icd file: OCL_ICD_FILENAMES=libnvidia-opencl.so.1)"
                          : fmt::format("{}", fmt::join(lines, ", "));
 }
 
@@ -100,7 +101,7 @@ DevicePick pick_device(const std::string &wanted, const std::vector<DeviceInfo> 
 Device open_device(const DeviceInfo &info) {
     return with_device(info, [&] {
         std::optional<Device> found;
-        for_each_device(info.icd, [&](const DeviceInfo &seen, const cl::Device &device) {
+        for_each_device(info.library, [&](const DeviceInfo &seen, const cl::Device &device) {
             if (seen.platform_place == info.platform_place && seen.device_place == info.device_place && seen.name == info.name)
                 found = Device{info, device, cl::Context(), cl::CommandQueue()};
         });

@@ -20,7 +20,7 @@ struct DeviceInfo {
     unsigned compute_units = 0;
     bool fp64 = false;
     int native_lanes = 1;             // 1 on a GPU, else the native float vector width: 1, 4, 8 or 16
-    std::string icd;                  // the driver's .icd file; empty: whatever the loader finds
+    std::string library;              // the driver's, by the path it was found at; empty: whatever the loader finds
     int platform_place = 0, device_place = 0; // among what that driver alone lists
     std::string problem;              // why the platform or device could not be asked ("crashed", "timed out"), else empty
 };

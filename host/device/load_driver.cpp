@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
+#include <utility>
+
+#include <dlfcn.h>
+#include <link.h>
 
 namespace opal {
 
@@ -42,13 +47,37 @@ void describe(const cl::Device &device, DeviceInfo &info) {
         info.problem = "has no compiler";
 }
 
-std::string problem_of(const cl::Error &error) { return std::string(error.what()) + " failed: " + cl_error_name(error.err()); }
+// Tells the OpenCL loader, which reads its environment when it is first called, to load this library and no other; undone
+// afterwards, so that processes started later do not inherit it. Three loaders are about:
+// - Khronos's takes libraries from OCL_ICD_FILENAMES, and from OCL_ICD_VENDORS a folder of .icd files (icd.c, icd_linux.c);
+// - NVIDIA's, made from it, wants a slash at the end of that folder;
+// - ocl-icd does not know OCL_ICD_FILENAMES, but an OCL_ICD_VENDORS that is no folder and no .icd file is the library itself
+//   (libOpenCL(7)).
+// The library's name in both variables is understood by each, and needs no folder to be written.
+class LoaderEnvironment {
+public:
+    explicit LoaderEnvironment(const std::string &library) {
+        if (library.empty())
+            return;
+        for (const char *name : {"OCL_ICD_VENDORS", "OCL_ICD_FILENAMES"}) {
+            const char *const value = std::getenv(name);
+            before_.emplace_back(name, value ? std::optional<std::string>(value) : std::nullopt);
+            setenv(name, library.c_str(), 1);
+        }
+    }
+    ~LoaderEnvironment() {
+        for (const auto &[name, value] : before_)
+            value ? setenv(name, value->c_str(), 1) : unsetenv(name);
+    }
+    LoaderEnvironment(const LoaderEnvironment &) = delete;
+    LoaderEnvironment &operator=(const LoaderEnvironment &) = delete;
 
-} // namespace
+private:
+    std::vector<std::pair<const char *, std::optional<std::string>>> before_;
+};
 
-void for_each_device(const std::string &icd, const std::function<void(const DeviceInfo &, const cl::Device &)> &use) {
-    if (!icd.empty())
-        setenv("OCL_ICD_VENDORS", icd.c_str(), 1); // read when the loader is first called
+std::vector<cl::Platform> platforms_of(const std::string &library) {
+    const LoaderEnvironment environment(library);
     std::vector<cl::Platform> platforms;
     try {
         cl::Platform::get(&platforms);
@@ -57,9 +86,41 @@ void for_each_device(const std::string &icd, const std::function<void(const Devi
         if (error.err() != no_platform)
             throw;
     }
+    return platforms;
+}
+
+// Where the dynamic linker found a library that is loaded. Empty where it is not: the loader then took no notice of what it
+// was told and listed whatever it found.
+std::string path_of(const std::string &library) {
+    void *const handle = library.empty() ? nullptr : dlopen(library.c_str(), RTLD_LAZY | RTLD_NOLOAD);
+    if (!handle)
+        return {};
+    link_map *map = nullptr;
+    const std::string path = dlinfo(handle, RTLD_DI_LINKMAP, &map) == 0 ? map->l_name : "";
+    dlclose(handle);
+    return path;
+}
+
+// Loaders pass over a library without platforms and do not say why.
+std::string why_no_platform(const std::string &library) {
+    return dlopen(library.c_str(), RTLD_NOW) ? "offers no platform" : std::string("cannot be loaded (") + dlerror() + ")";
+}
+
+std::string problem_of(const cl::Error &error) { return std::string(error.what()) + " failed: " + cl_error_name(error.err()); }
+
+} // namespace
+
+void for_each_device(const std::string &library, const std::function<void(const DeviceInfo &, const cl::Device &)> &use) {
+    const std::vector<cl::Platform> platforms = platforms_of(library);
+    DeviceInfo driver;
+    if (platforms.empty() && !library.empty()) {
+        driver.library = library;
+        driver.problem = why_no_platform(library);
+        use(driver, cl::Device());
+    }
+    driver.library = path_of(library);
     for (size_t p = 0; p < platforms.size(); ++p) {
-        DeviceInfo base;
-        base.icd = icd;
+        DeviceInfo base = driver;
         base.platform_place = static_cast<int>(p);
         std::vector<cl::Device> devices;
         try {

@@ -3,6 +3,8 @@
 #include "support/device.h"
 #include "support/scratch.h"
 
+#include <nlohmann/json.hpp>
+
 #include <cstdlib>
 
 using namespace opal;
@@ -11,15 +13,15 @@ using namespace opal::test;
 namespace {
 
 // A driver whose first entry point, which the loader calls before anything else, does what `body` says.
-std::filesystem::path make_driver(const ScratchFolder &folder, const std::string &name, const std::string &body) {
-    const std::filesystem::path source = folder.write(name + ".c", "#include <stdlib.h>\n#include <unistd.h>\n"
+Driver make_driver(const ScratchFolder &folder, const std::string &name, const std::string &body) {
+    const std::filesystem::path source = folder.write(name + ".c", "#include <stdio.h>\n#include <stdlib.h>\n#include <unistd.h>\n"
                                                                    "void *clGetExtensionFunctionAddress(const char *name) {\n    (void)name;\n    " +
                                                                        body + "\n    return 0;\n}\n");
     const std::string library = folder / ("lib" + name + ".so");
     const Outcome built = run_shell("cc -shared -fPIC " + source.string() + " -o " + library);
     INFO(built.err);
     REQUIRE(built.exit_code == 0);
-    return folder.write("vendors/" + name + ".icd", library + "\n");
+    return {folder.write("vendors/" + name + ".icd", library + "\n").string(), library};
 }
 
 DeviceInfo listed(int index, const std::string &type, const std::string &name, const std::string &problem = "") {
@@ -33,12 +35,37 @@ DeviceInfo listed(int index, const std::string &type, const std::string &name, c
 }
 
 // A driver that has a usable device: others may be installed that have none.
-std::filesystem::path good_driver() {
-    for (const std::filesystem::path &driver : find_drivers())
+Driver good_driver() {
+    set_probe_binary(OPAL_BINARY);
+    for (const Driver &driver : find_drivers())
         if (const auto devices = probe_drivers({driver}, 60); !devices.empty() && devices[0].problem.empty())
-            return driver;
+            return {devices[0].library, devices[0].library};
     FAIL("no driver has a device");
     return {};
+}
+
+Outcome devices_with(const std::string &environment, const std::string &arguments = "") {
+    return run_shell(environment + " " + OPAL_BINARY + " devices " + arguments);
+}
+
+// What find_drivers says where these variables, and no others, tell the loaders where to look: "NAME -> LIBRARY" each.
+std::vector<std::string> found_with(const std::map<std::string, std::string> &variables) {
+    std::map<std::string, std::string> before;
+    for (const char *name : {"OCL_ICD_FILENAMES", "OCL_ICD_VENDORS", "OPENCL_VENDOR_PATH"}) {
+        if (const char *value = std::getenv(name))
+            before[name] = value;
+        unsetenv(name);
+    }
+    for (const auto &[name, value] : variables)
+        setenv(name.c_str(), value.c_str(), 1);
+    std::vector<std::string> lines;
+    for (const Driver &driver : find_drivers())
+        lines.push_back(driver.name + " -> " + driver.library);
+    for (const auto &[name, value] : variables)
+        unsetenv(name.c_str());
+    for (const auto &[name, value] : before)
+        setenv(name.c_str(), value.c_str(), 1);
+    return lines;
 }
 
 const std::vector<DeviceInfo> several = {listed(0, "cpu", "llvmpipe (LLVM 15)"), listed(1, "cpu", "Ryzen"),
@@ -50,12 +77,12 @@ const std::vector<DeviceInfo> several = {listed(0, "cpu", "llvmpipe (LLVM 15)"),
 TEST_CASE("A driver that crashes or hangs costs its line and no other", "[devices]") {
     set_probe_binary(OPAL_BINARY);
     const ScratchFolder folder;
-    const std::vector<std::filesystem::path> drivers = {make_driver(folder, "crash", "abort();"), make_driver(folder, "hang", "sleep(60);"),
+    const std::vector<Driver> drivers = {make_driver(folder, "crash", "abort();"), make_driver(folder, "hang", "sleep(60);"),
                                                         good_driver()};
     const std::vector<DeviceInfo> found = probe_drivers(drivers, 3);
     REQUIRE(found.size() >= 3);
     CHECK(found[0].problem == "crashed while it was asked (Aborted)");
-    CHECK(found[0].platform == drivers[0].string());
+    CHECK(found[0].platform == drivers[0].name);
     CHECK(found[1].problem == "did not answer within 3 s");
     CHECK(found[2].problem == "");
     CHECK(found[2].memory > 0);
@@ -64,21 +91,78 @@ TEST_CASE("A driver that crashes or hangs costs its line and no other", "[device
 TEST_CASE("opal devices survives a crashing driver beside a good one", "[devices]") {
     const ScratchFolder folder;
     make_driver(folder, "a_crash", "abort();");
-    set_probe_binary(OPAL_BINARY);
-    const std::filesystem::path good = good_driver();
-    std::filesystem::copy(good, folder / ("vendors/" + good.filename().string()));
-    const std::string environment = "OCL_ICD_VENDORS=" + (folder / "vendors").string() + " ";
-    const Outcome outcome = run_shell(environment + OPAL_BINARY + " devices");
+    folder.write("vendors/good.icd", good_driver().library + "\n");
+    const std::string environment = "OCL_ICD_VENDORS=" + (folder / "vendors").string();
+    const Outcome outcome = devices_with(environment);
     CHECK(outcome.exit_code == 0);
     CHECK_THAT(outcome.out, Catch::Contains("a_crash.icd: crashed while it was asked") && Catch::Contains("render takes 1: "));
-    const Outcome refused = run_shell(environment + OPAL_BINARY + " devices --device 0");
+    const Outcome refused = devices_with(environment, "--device 0");
     CHECK(refused.exit_code == 1);
     CHECK_THAT(refused.err, Catch::StartsWith("error: device 0 ") && Catch::Contains("crashed while it was asked"));
 }
 
+TEST_CASE("Drivers are found where each loader would look", "[devices]") {
+    using Lines = std::vector<std::string>;
+    const ScratchFolder folder;
+    const auto icd = [&](const std::string &name, const std::string &text) { return folder.write("vendors/" + name, text).string(); };
+    const std::string b = icd("b.icd", "libb.so.1\n"), a = icd("a.icd", "# whose it is\n\n \t/opt/a/liba.so \r\nnot this one\n"),
+                      empty = icd("empty.icd", "\n# nothing\n"), vendors = (folder / "vendors").string();
+    icd("readme.txt", "libc.so\n");
+    const Lines all = {a + " -> /opt/a/liba.so", b + " -> libb.so.1", empty + " -> "};
+    CHECK(found_with({{"OCL_ICD_VENDORS", vendors}}) == all);
+    CHECK(found_with({{"OCL_ICD_VENDORS", vendors + "/"}}).size() == 3);
+    CHECK(found_with({{"OPENCL_VENDOR_PATH", vendors}}) == all);
+    CHECK(found_with({{"OPENCL_VENDOR_PATH", vendors}, {"OCL_ICD_VENDORS", ""}}) == all);
+    CHECK(found_with({{"OCL_ICD_VENDORS", b}}) == Lines{b + " -> libb.so.1"});
+    CHECK(found_with({{"OCL_ICD_VENDORS", "b.icd"}, {"OPENCL_VENDOR_PATH", vendors}}) == Lines{b + " -> libb.so.1"});
+    CHECK(found_with({{"OCL_ICD_VENDORS", "libc.so.2"}}) == Lines{"libc.so.2 -> libc.so.2"});
+    CHECK(found_with({{"OCL_ICD_VENDORS", "/no/such/folder"}}) == Lines{"/no/such/folder -> /no/such/folder"});
+    CHECK(found_with({{"OCL_ICD_VENDORS", b}, {"OCL_ICD_FILENAMES", "libx.so::/opt/liby.so"}}) ==
+          Lines{"libx.so -> libx.so", "/opt/liby.so -> /opt/liby.so", b + " -> libb.so.1"});
+    CHECK(found_with({{"OPENCL_VENDOR_PATH", (folder / "none").string()}}) == Lines{" -> "});
+}
+
+TEST_CASE("The loader is told a driver's library in both its variables, and nobody else is", "[devices]") {
+    const ScratchFolder folder;
+    const std::string told = folder / "told";
+    const Driver driver = make_driver(folder, "listener", "FILE *out = fopen(\"" + told + R"(", "w");
+    fprintf(out, "%s %s", getenv("OCL_ICD_VENDORS"), getenv("OCL_ICD_FILENAMES")); fclose(out);)");
+    set_probe_binary(OPAL_BINARY);
+    CHECK(probe_drivers({driver}, 60).at(0).problem == "offers no platform");
+    CHECK(read_text(told) == driver.library + " " + driver.library);
+
+    const auto environment = [] { return run_shell("env | grep ^OCL_ICD").out; };
+    const std::string before = environment();
+    open_device(device().info);
+    CHECK(environment() == before);
+}
+
+TEST_CASE("A driver with several names is listed once", "[devices]") {
+    const Driver good = good_driver();
+    const size_t own = probe_drivers({good}, 60).size();
+    const ScratchFolder folder;
+    std::filesystem::create_symlink(std::filesystem::canonical(good.library), folder / "libother.so");
+    folder.write("vendors/a.icd", good.library + "\n");
+    folder.write("vendors/b.icd", (folder / "libother.so").string() + "\n");
+    const Outcome outcome = devices_with("OCL_ICD_FILENAMES=" + good.library + " OCL_ICD_VENDORS=" + (folder / "vendors").string(), "--json");
+    INFO(outcome.out << outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK(nlohmann::json::parse(outcome.out)["devices"].size() == own);
+}
+
+TEST_CASE("A driver that gives no device says why", "[devices]") {
+    const ScratchFolder folder;
+    folder.write("gone.icd", "libgone.so.7\n");
+    folder.write("empty.icd", "\n");
+    const Outcome outcome = devices_with("OCL_ICD_VENDORS=" + folder.path().string());
+    CHECK(outcome.exit_code == 1);
+    CHECK_THAT(outcome.out, Catch::Contains("gone.icd: cannot be loaded (libgone.so.7: cannot open shared object file"));
+    CHECK_THAT(outcome.out, Catch::Contains("empty.icd: names no library"));
+}
+
 TEST_CASE("Without any driver the message says what to install", "[devices]") {
     const ScratchFolder folder;
-    const Outcome outcome = run_shell("OCL_ICD_VENDORS=" + folder.path().string() + " " + OPAL_BINARY + " devices");
+    const Outcome outcome = devices_with("OCL_ICD_VENDORS=" + folder.path().string());
     CHECK(outcome.exit_code == 1);
     CHECK_THAT(outcome.err, Catch::StartsWith("error: no usable OpenCL device") && Catch::Contains("pocl-opencl-icd"));
 }
