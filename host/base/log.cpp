@@ -5,7 +5,7 @@
 namespace opal {
 
 namespace {
-bool quiet_chosen = false;
+bool quiet_chosen = false, verbose_chosen = false;
 std::vector<std::string> kept_warnings;
 } // namespace
 
@@ -15,6 +15,13 @@ bool is_quiet() { return quiet_chosen; }
 void info(const std::string &line) {
     if (!quiet_chosen)
         fmt::print(stderr, "{}\n", line);
+}
+
+void set_verbose(bool verbose) { verbose_chosen = verbose; }
+
+void detail(const std::string &text) {
+    if (verbose_chosen)
+        fmt::print(stderr, "{}\n", text);
 }
 
 void warn(const std::string &line) {

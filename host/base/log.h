@@ -9,6 +9,8 @@ namespace opal {
 void set_quiet(bool quiet);             // --quiet silences info, never warnings
 bool is_quiet();
 void info(const std::string &line);
+void set_verbose(bool verbose);         // --verbose
+void detail(const std::string &text);   // said only where --verbose asks for it
 void warn(const std::string &line);     // prints "warning: ..."
 const std::vector<std::string> &warnings();
 

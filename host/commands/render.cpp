@@ -25,7 +25,7 @@ struct Options {
     SceneOptions scene;
     std::string device, out, json, layers, time, target_error, strategy;
     unsigned spp = 0, width = 0, height = 0, seed = 0;
-    bool no_png = false, quiet = false;
+    bool no_png = false, quiet = false, verbose = false;
 };
 
 class Stopwatch {
@@ -139,6 +139,7 @@ nlohmann::json choose_strategy(SceneDescription &scene, const Device &device, co
 
 int run(const Options &o, const CLI::App &app) {
     set_quiet(o.quiet);
+    set_verbose(o.verbose);
     const bool variance = o.layers == "variance";
     RenderSeconds seconds;
     const StopRule rule = stop_rule(o);
@@ -242,7 +243,8 @@ RunCommand setup_render(CLI::App &app) {
     app.add_option("--seed", o->seed, "Of the random numbers; the same seed gives the same image")->capture_default_str();
     app.add_option("--json", o->json, "File for the statistics of the render");
     app.add_option("--layers", o->layers, "More layers for the EXR: variance (of each pixel's mean)")->check(CLI::IsMember({"variance"}));
-    app.add_flag("--quiet", o->quiet, "Print nothing but warnings and errors");
+    CLI::Option *quiet = app.add_flag("--quiet", o->quiet, "Print nothing but warnings and errors");
+    app.add_flag("--verbose", o->verbose, "Print what the driver remarks on the kernels, too")->excludes(quiet);
     return [o, &app] { return run(*o, app); };
 }
 

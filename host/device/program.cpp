@@ -1,16 +1,24 @@
 #include "device/program.h"
 
+#include "base/log.h"
+
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdlib>
 
 namespace opal {
 
 namespace {
 
-// PoCL and most drivers report places by this name: "cl/kernels/render.cl:40:18: ...".
+// $OPAL_KERNEL_FLAGS: more of them, to try what a driver offers; the tests' -Werror comes by it.
 std::string build_flags(const BuildOptions &options) {
-    return std::string("-cl-std=CL1.2 -Werror") + (options.math == MathMode::fast ? " -cl-fast-relaxed-math" : "");
+    std::string flags = "-cl-std=CL1.2";
+    if (options.math == MathMode::fast)
+        flags += " -cl-fast-relaxed-math";
+    if (const char *more = std::getenv("OPAL_KERNEL_FLAGS"); more && *more)
+        flags += std::string(" ") + more;
+    return flags;
 }
 
 // A call that passes lanes passes them through memory, so every function is inlined: 10 to 15 % of the time of a render on
@@ -22,6 +30,7 @@ constexpr const char *inline_end = "\n#if defined(__clang__) && __clang_major__ 
                                    "#pragma clang attribute pop\n"
                                    "#endif\n";
 
+// Most drivers report places by the #line directives: "cl/kernels/render.cl:40:18: ...".
 std::string log_of(const cl::Program &program, const cl::Device &device) {
     try {
         return program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
@@ -70,8 +79,11 @@ cl::Program build_program(const Device &device, const std::string &text, const B
                                 device.info.driver, cl_error_name(error.err()), build_flags(options),
                                 log_of(program, device.device)));
     }
+    const double taken = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    detail(fmt::format("build   {} for {} in {:.3g} s; flags {}; the driver says:\n{}", options.kernels, device.info.name, taken,
+                       build_flags(options), log_of(program, device.device)));
     if (seconds)
-        *seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        *seconds = taken;
     return program;
 }
 

@@ -35,7 +35,8 @@ struct Sources {
 // Defines (every feature, every axis, LANES, OPAL_DOUBLE, OPAL_FAST, OPAL_COUNT_TESTS, OPAL_TWICE_*) followed by the expanded sources.
 std::string program_text(const Features &features, const BuildOptions &options, const Sources &sources);
 
-// Compiles with -cl-std=CL1.2 -Werror (and, for MathMode::fast, -cl-fast-relaxed-math). Error: device, driver, build log.
+// Compiles with -cl-std=CL1.2, -cl-fast-relaxed-math for MathMode::fast, and $OPAL_KERNEL_FLAGS. What the driver remarks is told
+// by --verbose. Error: device, driver, the whole build log.
 cl::Program build_program(const Device &device, const std::string &text, const BuildOptions &options, double *seconds = nullptr);
 
 } // namespace opal

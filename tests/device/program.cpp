@@ -18,7 +18,7 @@ TEST_CASE("A kernel that does not build is reported with device, driver, file an
                                                Catch::Contains("cl/tests/inline.cl:3:14"));
 }
 
-TEST_CASE("A warning is an error", "[program]") {
+TEST_CASE("In tests a warning is an error", "[program]") {
     CHECK_THROWS_AS(program_of("#warning careful\nkernel void fine(global float *out) { out[0] = 1; }\n", 1), Error);
 }
 

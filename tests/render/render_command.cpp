@@ -39,6 +39,16 @@ struct Place {
     }
 };
 
+// A copy of cl/ in which `to` is written where `from` was first.
+std::string changed_kernels(const ScratchFolder &folder, const std::string &file, const std::string &from, const std::string &to) {
+    std::filesystem::copy(OPAL_SOURCE_DIR "/cl", folder / "cl", std::filesystem::copy_options::recursive);
+    std::string text = read_text(folder / ("cl/" + file));
+    const size_t place = text.find(from);
+    REQUIRE(place != std::string::npos);
+    folder.write("cl/" + file, text.replace(place, from.size(), to));
+    return (folder / "cl").string();
+}
+
 void check_refused(const Place &place, const std::string &arguments, const std::string &reason) {
     const Outcome outcome = run_shell(place.render(arguments));
     INFO(arguments << "\n" << outcome.err);
@@ -110,4 +120,22 @@ TEST_CASE("Ctrl-C writes what there is and exits with a code of its own", "[rend
     CHECK(outcome.exit_code == 130);
     CHECK_THAT(outcome.err, Catch::Contains("warning: interrupted: the image holds "));
     CHECK(read_exr(place.folder / "out.exr").get("R").values.front() == Approx(1).epsilon(1e-4));
+}
+
+TEST_CASE("What a driver remarks on the kernels is no error, and told by --verbose", "[render_command]") {
+    const Place place;
+    const ScratchFolder folder;
+    // The typedef makes the text another one: PoCL's cache, which keeps what was said, does not see directives.
+    const std::string remark = "a remark of the test", text = "#warning " + remark + "\ntypedef int a_remark_of_the_test;\n#include";
+    const std::string arguments = "--no-png --cl-dir " + changed_kernels(folder, "kernels/render.cl", "#include", text);
+    const Outcome told = run_shell("export OPAL_KERNEL_FLAGS= && " + place.render("--verbose " + arguments));
+    INFO(told.err);
+    CHECK(told.exit_code == 0);
+    CHECK_THAT(told.err, Catch::Contains(remark) && Catch::Contains("-cl-std=CL1.2"));
+    const Outcome plain = run_shell("export OPAL_KERNEL_FLAGS= && " + place.render(arguments));
+    CHECK(plain.exit_code == 0);
+    CHECK_THAT(plain.err, !Catch::Contains(remark));
+    const Outcome strict = run_shell(place.render(arguments));
+    CHECK(strict.exit_code == 1);
+    CHECK_THAT(strict.err, Catch::Contains(remark) && Catch::Contains("the kernels do not build"));
 }
