@@ -30,10 +30,9 @@ struct Range {
 #define OPAL_RANGE(name, device, host, low, high, scale, limit) {#name, low, high, scale, limit},
 constexpr Range ranges[] = {OPAL_MATH(OPAL_RANGE)};
 
-cl::Program build_selftest(const Device &device, const SelftestOptions &options) {
-    BuildOptions build = options.build;
+cl::Program build_selftest(const Device &device, BuildOptions build, const Sources &sources) {
     build.kernels = "kernels/selftest.cl";
-    return build_program(device, program_text(scene_of_bsdfs({}).features, build, *options.sources), build);
+    return build_program(device, program_text(scene_of_bsdfs({}).features, build, sources), build);
 }
 
 double wrong_layouts(const Device &device, const cl::Program &program) {
@@ -72,7 +71,7 @@ std::vector<float> math_inputs() {
 // The distance of two neighbouring floats at |x|, normal ones.
 double ulp(double x) { return std::ldexp(1.0, std::max(std::ilogb(std::max(std::abs(x), 1e-37)), -126) - 23); }
 
-Findings math_errors(const Device &device, const cl::Program &program, const SelftestOptions &options) {
+Findings math_errors(const Device &device, const cl::Program &program, MathMode math) {
     const std::vector<float> xs = math_inputs();
     const cl::Buffer in = make_table(device, xs, "numbers"), out = make_zeros<float>(device, xs.size(), "their functions");
     with_device(device.info, [&] {
@@ -85,7 +84,7 @@ Findings math_errors(const Device &device, const cl::Program &program, const Sel
     });
     const std::vector<float> values = read_buffer<float>(device, out, xs.size());
     // Relaxed math may do what it likes; 512 ulp, 3e-5, is where an image would begin to differ from noise.
-    const bool fast = options.build.math == MathMode::fast;
+    const bool fast = math == MathMode::fast;
     Findings findings;
     for (int function = 0; function < MATH_COUNT; function++) {
         double worst = 0;
@@ -140,10 +139,14 @@ Findings check_numbers(const Device &device, const SelftestOptions &options) {
 
 } // namespace
 
+Findings check_functions(const Device &device, const BuildOptions &build, const Sources &sources) {
+    return math_errors(device, build_selftest(device, build, sources), build.math);
+}
+
 Findings check_basics(const Device &device, const SelftestOptions &options) {
-    const cl::Program program = build_selftest(device, options);
+    const cl::Program program = build_selftest(device, options.build, *options.sources);
     Findings findings = {at_most("records laid out otherwise", wrong_layouts(device, program), 0)};
-    const Findings numbers = check_numbers(device, options), math = math_errors(device, program, options);
+    const Findings numbers = check_numbers(device, options), math = math_errors(device, program, options.build.math);
     findings.insert(findings.end(), numbers.begin(), numbers.end());
     findings.insert(findings.end(), math.begin(), math.end());
     return findings;

@@ -43,6 +43,9 @@ Findings check_lights(const Device &device, const SelftestOptions &options);
 Findings check_rays(const Device &device, const SelftestOptions &options);
 Findings check_images(const Device &device, const SelftestOptions &options);
 
+// The math functions alone, as a kernel of this width and math computes them.
+Findings check_functions(const Device &device, const BuildOptions &build, const Sources &sources);
+
 // Samples of a histogram, and cells along each side of its grid.
 inline size_t selftest_samples(const SelftestOptions &options) { return options.full ? 1'000'000 : 60'000; }
 inline int selftest_cells(const SelftestOptions &options) { return options.full ? 40 : 16; }

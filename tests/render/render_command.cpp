@@ -139,3 +139,19 @@ TEST_CASE("What a driver remarks on the kernels is no error, and told by --verbo
     CHECK(strict.exit_code == 1);
     CHECK_THAT(strict.err, Catch::Contains(remark) && Catch::Contains("the kernels do not build"));
 }
+
+TEST_CASE("Fast math warns where its functions are coarse, and only there", "[render_command]") {
+    const Place place;
+    const auto warned = [](const Outcome &outcome) {
+        INFO(outcome.err);
+        CHECK(outcome.exit_code == 0);
+        return outcome.err.find("warning: --math fast: ") != std::string::npos;
+    };
+    CHECK_FALSE(warned(run_shell(place.render("--math fast"))));
+    const ScratchFolder folder;
+    const std::string coarse = " --cl-dir " + changed_kernels(folder, "kernels/selftest_list.h", "MATH(exp, exp(x)", "MATH(exp, exp(x) * (real)(1.0005)");
+    const Outcome fast = run_shell(place.render("--math fast" + coarse));
+    CHECK(warned(fast));
+    CHECK_THAT(fast.err, Catch::Contains("error of exp, ulp") && !Catch::Contains("error of log"));
+    CHECK_FALSE(warned(run_shell(place.render("--math precise" + coarse))));
+}
