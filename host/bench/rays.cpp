@@ -89,7 +89,7 @@ RaySet RayBench::generate(int kind, size_t count, unsigned seed) {
         for (size_t first = 0; first < stride; first += items_a_launch * size_t(build_.lanes)) {
             kernel.setArg(place, cl_uint(first));
             device_.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items_a_launch),
-                                               cl::NDRange(device_.info.type == "gpu" ? 64 : 1));
+                                               cl::NDRange(group_size(device_.info)));
         }
         return device_.queue.finish();
     });
@@ -127,7 +127,7 @@ RayBench::Seconds RayBench::trace(cl::Program &program, Batch &batch) {
         cl::Event event;
         const std::clock_t before = std::clock();
         device_.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(batch.items),
-                                           cl::NDRange(device_.info.type == "gpu" ? 64 : 1), nullptr, &event);
+                                           cl::NDRange(group_size(device_.info)), nullptr, &event);
         event.wait();
         return Seconds{1e-9 * double(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() - event.getProfilingInfo<CL_PROFILING_COMMAND_START>()),
                        double(std::clock() - before) / CLOCKS_PER_SEC};
@@ -143,7 +143,7 @@ RayTimes RayBench::time(const RaySet &set, int runs) {
     // One shape for all sets of a CPU, as drivers compile a kernel anew for each; about a thousand rays an item keep its price small.
     const bool gpu = device_.info.type == "gpu";
     batch.rays_an_item = gpu ? lanes : round_up((count + 1023) / 1024, lanes);
-    batch.items = gpu ? round_up((count + lanes - 1) / lanes, 64) : 1024;
+    batch.items = gpu ? round_up((count + lanes - 1) / lanes, group_size(device_.info)) : 1024;
     std::vector<float> planes(TRACE_RAY_PLANES * batch.stride);
     for (size_t i = 0; i < count; i++)
         for (size_t plane = 0; plane < TRACE_RAY_PLANES; plane++)

@@ -250,6 +250,8 @@ int run_renders(const RenderBenchOptions &o) {
     fmt::print("{:<28}{:.3g} % traversal, {:.3g} % random numbers, {:.3g} % shading and all else\n", "share of time",
                100 * report["share"]["traversal"].get<double>(), 100 * report["share"]["sampling"].get<double>(), 100 * shading);
     for (int lanes : {1, 4, 8, 16}) {
+        if (pick.info.type == "gpu" && lanes > pick.info.native_lanes)
+            continue; // minutes of compilation for widths that a GPU never renders with
         BuildOptions other = build;
         other.lanes = lanes;
         report["widths"][std::to_string(lanes)] = told(fmt::format("{} lanes", lanes), bench.race(flatten(scene, lanes), other));

@@ -1,5 +1,7 @@
 #include "commands/commands.h"
+#include "device/buffers.h"
 #include "device/info_json.h"
+#include "device/program.h"
 
 #include <fmt/format.h>
 
@@ -17,6 +19,23 @@ struct DevicesOptions {
 
 std::string memory_text(unsigned long long bytes) { return fmt::format("{:.1f} GiB", static_cast<double>(bytes) / (1 << 30)); }
 
+std::string lanes_text(int lanes) { return fmt::format("{} lane{}", lanes, lanes == 1 ? "" : "s"); }
+
+// What a render makes use of.
+std::string used_of(const DeviceInfo &d) {
+    const std::string doubles = d.fp64 ? fmt::format(", double ({})", lanes_text(lanes_for(d, 0, MathMode::double_precision))) : "";
+    return fmt::format("{}, work-groups of {}, buffers of at most {}; --math precise, fast{}", lanes_text(d.native_lanes), group_size(d),
+                       bytes_text(d.max_allocation), doubles);
+}
+
+// What the device has and no kernel takes, and what it lacks.
+std::string unused_of(const DeviceInfo &d) {
+    std::string text = "local memory";
+    if (d.native_lanes == 1 && d.vector_width > 1)
+        text += fmt::format("; vectors of {} floats, as {}", d.vector_width, d.type == "gpu" ? "a GPU runs a path a work-item" : "4 is the least");
+    return text + (d.fp64 ? "" : "; --math double, as the device lacks cl_khr_fp64");
+}
+
 void print_table(const std::vector<DeviceInfo> &devices) {
     constexpr const char *row = "{:>5}  {:<11}  {:>5}  {:>10}  {:>4}  {:>5}  {}\n";
     fmt::print(row, "index", "type", "units", "memory", "fp64", "lanes", "name");
@@ -26,7 +45,8 @@ void print_table(const std::vector<DeviceInfo> &devices) {
             continue;
         }
         fmt::print(row, d.index, d.type, d.compute_units, memory_text(d.memory), d.fp64 ? "yes" : "no", d.native_lanes, d.name);
-        fmt::print("{:>46}  {}; {}; driver {}\n", "", d.platform, d.version, d.driver);
+        fmt::print("{:>7}{}; {}; driver {}\n", "", d.platform, d.version, d.driver);
+        fmt::print("{:>7}used: {}\n{:>7}not used: {}\n", "", used_of(d), "", unused_of(d));
     }
 }
 

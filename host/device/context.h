@@ -19,11 +19,16 @@ struct DeviceInfo {
     unsigned long long memory = 0, max_allocation = 0; // bytes
     unsigned compute_units = 0;
     bool fp64 = false;
-    int native_lanes = 1;             // 1 on a GPU, else the native float vector width: 1, 4, 8 or 16
+    unsigned vector_width = 1;        // floats, as the driver says it
+    int native_lanes = 1;             // 1 on a GPU, else the widest of 1, 4, 8 and 16 that fits vector_width
     std::string library;              // the driver's, by the path it was found at; empty: whatever the loader finds
     int platform_place = 0, device_place = 0; // among what that driver alone lists
     std::string problem;              // why the platform or device could not be asked ("crashed", "timed out"), else empty
 };
+
+// Work-items of a group. All that measures a device takes the size that renders, as a driver's functions may have other bits
+// in another (Intel's rsqrt in groups below 8).
+inline size_t group_size(const DeviceInfo &info) { return info.type == "gpu" ? 64 : 1; }
 
 // Asks every driver in a process of its own (device/probe.h), all at once, so that one that crashes or hangs costs its
 // line and nothing else. time_limit: seconds for each.

@@ -8,7 +8,7 @@
 namespace opal {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceInfo, index, platform, name, vendor, type, version, driver, memory, max_allocation,
-                                   compute_units, fp64, native_lanes, library, platform_place, device_place, problem)
+                                   compute_units, fp64, vector_width, native_lanes, library, platform_place, device_place, problem)
 
 // Text of a JSON value, whatever bytes a driver put into its names. indent -1: one line.
 inline std::string dump(const nlohmann::json &json, int indent) {

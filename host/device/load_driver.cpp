@@ -17,10 +17,10 @@ std::string type_name(cl_device_type type) {
 }
 
 // How many paths a work-item should carry: the widest of 1, 4, 8, 16 that the device's float vectors fill.
-int lanes_of(const DeviceInfo &info, cl_uint vector_width) {
+int lanes_of(const DeviceInfo &info) {
     if (info.type == "gpu")
         return 1;
-    return vector_width >= 16 ? 16 : vector_width >= 8 ? 8 : vector_width >= 4 ? 4 : 1;
+    return info.vector_width >= 16 ? 16 : info.vector_width >= 8 ? 8 : info.vector_width >= 4 ? 4 : 1;
 }
 
 // Some drivers pad names with blanks or end them with a zero.
@@ -40,7 +40,8 @@ void describe(const cl::Device &device, DeviceInfo &info) {
     info.max_allocation = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
     info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
     info.fp64 = device.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_fp64") != std::string::npos;
-    info.native_lanes = lanes_of(info, device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>());
+    info.vector_width = device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>();
+    info.native_lanes = lanes_of(info);
     if (!device.getInfo<CL_DEVICE_AVAILABLE>())
         info.problem = "not available";
     else if (!device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>())

@@ -23,7 +23,7 @@ Renderer::Shape Renderer::shape_of_launches() const {
     const bool gpu = device_.info.type == "gpu";
     Shape s{};
     s.tile_width = s.tile_height = gpu ? 1 : 8;
-    s.local_size = gpu ? 64 : 1;
+    s.local_size = unsigned(group_size(device_.info));
     s.tiles = ceil_div(settings_.width, s.tile_width) * ceil_div(settings_.height, s.tile_height);
     const unsigned wanted = gpu ? 1u << 17 : 64 * std::max(1u, device_.info.compute_units);
     s.chunks = std::clamp(wanted / s.tiles, 1u, most_chunks);

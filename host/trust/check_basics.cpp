@@ -79,7 +79,7 @@ Findings math_errors(const Device &device, const cl::Program &program, MathMode 
         kernel.setArg(0, in);
         kernel.setArg(1, cl_uint(math_count));
         kernel.setArg(2, out);
-        device.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(math_count), cl::NDRange(device.info.type == "gpu" ? 64 : 1));
+        device.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(math_count), cl::NDRange(group_size(device.info)));
         return device.queue.finish();
     });
     const std::vector<float> values = read_buffer<float>(device, out, xs.size());

@@ -160,6 +160,16 @@ TEST_CASE("A driver that gives no device says why", "[devices]") {
     CHECK_THAT(outcome.out, Catch::Contains("empty.icd: names no library"));
 }
 
+TEST_CASE("opal devices tells what of each device is used and what is not", "[devices]") {
+    const auto posing = [](const std::string &pose) { return devices_with("LD_PRELOAD=" OPAL_POSING " OPAL_POSE=" + pose, "--device " + std::to_string(device().info.index)); };
+    const Outcome gpu = posing("gpu,no-fp64"), narrow = posing("vectors-of-2");
+    CHECK_THAT(gpu.out, Catch::Contains("used: 1 lane, work-groups of 64, buffers of at most ") && Catch::Contains("--math precise, fast\n"));
+    CHECK_THAT(gpu.out, Catch::Contains("not used: local memory; ") && Catch::Contains("; --math double, as the device lacks cl_khr_fp64\n"));
+    CHECK_THAT(narrow.out, Catch::Contains("used: 1 lane, work-groups of 1, ") && Catch::Contains("vectors of 2 floats, as 4 is the least"));
+    if (device().info.fp64)
+        CHECK_THAT(narrow.out, Catch::Contains(", double (1 lane)\n"));
+}
+
 TEST_CASE("Without any driver the message says what to install", "[devices]") {
     const ScratchFolder folder;
     const Outcome outcome = devices_with("OCL_ICD_VENDORS=" + folder.path().string());
