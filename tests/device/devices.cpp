@@ -48,6 +48,11 @@ Outcome devices_with(const std::string &environment, const std::string &argument
     return run_shell(environment + " " + OPAL_BINARY + " devices " + arguments);
 }
 
+// `opal devices` where this folder's drivers are all that loaders are told of.
+Outcome devices_of(const std::filesystem::path &vendors, const std::string &arguments = "") {
+    return devices_with("OCL_ICD_FILENAMES= OCL_ICD_VENDORS=" + vendors.string(), arguments);
+}
+
 // What find_drivers says where these variables, and no others, tell the loaders where to look: "NAME -> LIBRARY" each.
 std::vector<std::string> found_with(const std::map<std::string, std::string> &variables) {
     std::map<std::string, std::string> before;
@@ -92,11 +97,10 @@ TEST_CASE("opal devices survives a crashing driver beside a good one", "[devices
     const ScratchFolder folder;
     make_driver(folder, "a_crash", "abort();");
     folder.write("vendors/good.icd", good_driver().library + "\n");
-    const std::string environment = "OCL_ICD_VENDORS=" + (folder / "vendors").string();
-    const Outcome outcome = devices_with(environment);
+    const Outcome outcome = devices_of(folder / "vendors");
     CHECK(outcome.exit_code == 0);
     CHECK_THAT(outcome.out, Catch::Contains("a_crash.icd: crashed while it was asked") && Catch::Contains("render takes 1: "));
-    const Outcome refused = devices_with(environment, "--device 0");
+    const Outcome refused = devices_of(folder / "vendors", "--device 0");
     CHECK(refused.exit_code == 1);
     CHECK_THAT(refused.err, Catch::StartsWith("error: device 0 ") && Catch::Contains("crashed while it was asked"));
 }
@@ -154,7 +158,7 @@ TEST_CASE("A driver that gives no device says why", "[devices]") {
     const ScratchFolder folder;
     folder.write("gone.icd", "libgone.so.7\n");
     folder.write("empty.icd", "\n");
-    const Outcome outcome = devices_with("OCL_ICD_VENDORS=" + folder.path().string());
+    const Outcome outcome = devices_of(folder.path());
     CHECK(outcome.exit_code == 1);
     CHECK_THAT(outcome.out, Catch::Contains("gone.icd: cannot be loaded (libgone.so.7: cannot open shared object file"));
     CHECK_THAT(outcome.out, Catch::Contains("empty.icd: names no library"));
@@ -172,7 +176,7 @@ TEST_CASE("opal devices tells what of each device is used and what is not", "[de
 
 TEST_CASE("Without any driver the message says what to install", "[devices]") {
     const ScratchFolder folder;
-    const Outcome outcome = devices_with("OCL_ICD_VENDORS=" + folder.path().string());
+    const Outcome outcome = devices_of(folder.path());
     CHECK(outcome.exit_code == 1);
     CHECK_THAT(outcome.err, Catch::StartsWith("error: no usable OpenCL device") && Catch::Contains("pocl-opencl-icd"));
 }

@@ -44,7 +44,7 @@ TEST_CASE("Other OpenCL loaders find the same devices", "[loaders]") {
     std::istringstream list(folders);
     for (std::string folder; std::getline(list, folder, ':');) {
         REQUIRE(std::filesystem::exists(std::filesystem::path(folder) / "libOpenCL.so.1"));
-        const Answers others = answers("LD_LIBRARY_PATH=" + folder + ":$LD_LIBRARY_PATH ");
+        const Answers others = answers("LD_LIBRARY_PATH=" + folder + "${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH} ");
         CHECK(others.devices == own.devices);
         CHECK(others.numbers == own.numbers);
     }

@@ -154,7 +154,7 @@ TEST_CASE("Several devices and kinds of math are crossed, each device in a proce
         return;
     }
     const Place place;
-    const Outcome outcome = run_shell("cd " + place.folder.path().string() + " && POCL_DEVICES='pthread pthread' OCL_ICD_VENDORS=" + device().info.library + " " + OPAL_BINARY +
+    const Outcome outcome = run_shell("cd " + place.folder.path().string() + " && POCL_DEVICES='pthread pthread' OCL_ICD_FILENAMES= OCL_ICD_VENDORS=" + device().info.library + " " + OPAL_BINARY +
                                       " sweep lamp.xml --strategies lighting=emitter --math precise,fast --device 0,1 --spp 8 --replicates 2 -o out");
     INFO(outcome.err);
     REQUIRE(outcome.exit_code == 0);
