@@ -1,6 +1,7 @@
 // opal sweep: error against time of several strategies on one scene.
 #include "base/command_line.h"
 #include "base/log.h"
+#include "base/read_file.h"
 #include "base/signals.h"
 #include "base/units.h"
 #include "commands/commands.h"
@@ -13,7 +14,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <iterator>
 
@@ -36,8 +36,7 @@ struct Options {
 
 // FNV-1a (Fowler, Noll, Vo) over the scene's text, its resolved strategy and its meshes.
 std::string hash_of(const SceneDescription &scene) {
-    std::ifstream stream(scene.file, std::ios::binary);
-    std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+    std::string bytes = read_file(scene.file);
     bytes += strategy_json(scene).dump();
     for (const Mesh &mesh : scene.meshes)
         if (const auto *m = std::get_if<TriangleMesh>(&mesh.shape))

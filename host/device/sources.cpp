@@ -1,12 +1,12 @@
 #include "device/program.h"
 
 #include "base/error.h"
+#include "base/read_file.h"
 #include "device/embedded.h"
 
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <sstream>
 
@@ -78,15 +78,6 @@ private:
     std::string text_;
 };
 
-std::string read_text(const std::filesystem::path &file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    if (!stream)
-        throw Error(fmt::format("{}: cannot be read", file.string()));
-    return text.str();
-}
-
 } // namespace
 
 const Sources &Sources::embedded() {
@@ -101,7 +92,7 @@ Sources Sources::from_folder(const std::string &folder) {
     Sources sources;
     for (const auto &entry : fs::recursive_directory_iterator(folder))
         if (entry.is_regular_file() && (entry.path().extension() == ".cl" || entry.path().extension() == ".h"))
-            sources.files[fs::relative(entry.path(), folder).generic_string()] = read_text(entry.path());
+            sources.files[fs::relative(entry.path(), folder).generic_string()] = read_file(entry.path());
     if (sources.files.empty())
         throw Error(fmt::format("{}: holds no .cl file (--cl-dir takes a copy of Opal's cl/)", folder));
     return sources;

@@ -1,6 +1,7 @@
 #include "image/image.h"
 
 #include "base/error.h"
+#include "base/read_file.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -12,16 +13,38 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <new>
 #include <stdexcept>
 
 namespace opal {
 
 namespace {
 
-// A file in memory: OpenEXR writes here, so that write_safely sees every error of the disk.
-class MemoryStream : public Imf::OStream {
+// A file that was read: OpenEXR parses it here, so that read_file sees every error of the disk.
+class MemoryInput : public Imf::IStream {
 public:
-    MemoryStream() : OStream("memory") {}
+    MemoryInput(const std::filesystem::path &file, std::string bytes)
+        : IStream(file.c_str()), bytes_(std::move(bytes)) {}
+    bool read(char bytes[], int count) override { // false: that was the file's last byte
+        if (place_ > bytes_.size() || static_cast<size_t>(count) > bytes_.size() - place_)
+            throw std::runtime_error("the file ends too early");
+        std::copy_n(bytes_.begin() + static_cast<std::ptrdiff_t>(place_), count, bytes);
+        place_ += static_cast<size_t>(count);
+        return place_ < bytes_.size();
+    }
+    uint64_t tellg() override { return place_; }
+    void seekg(uint64_t place) override { place_ = place; }
+
+private:
+    std::string bytes_;
+    size_t place_ = 0;
+};
+
+// A file in memory: OpenEXR writes here, so that write_safely sees every error of the disk.
+class MemoryOutput : public Imf::OStream {
+public:
+    MemoryOutput() : OStream("memory") {}
     void write(const char bytes[], int count) override {
         const size_t end = place_ + static_cast<size_t>(count);
         if (end > bytes_.size())
@@ -56,7 +79,7 @@ std::string exr_bytes(const Image &image) {
     }
     for (const auto &[name, text] : image.metadata)
         header.insert(name, Imf::StringAttribute(text));
-    MemoryStream stream;
+    MemoryOutput stream;
     {
         Imf::OutputFile file(stream, header);
         file.setFrameBuffer(frame);
@@ -90,11 +113,14 @@ Image read_pixels(Imf::InputFile &file) {
 } // namespace
 
 Image read_exr(const std::filesystem::path &file) {
+    MemoryInput stream(file, read_file(file));
     try {
-        Imf::InputFile input(file.c_str());
+        Imf::InputFile input(stream);
         if (!input.isComplete())
             throw Error("the file is incomplete");
         return read_pixels(input);
+    } catch (const std::bad_alloc &) {
+        cannot_read(file, ENOMEM);
     } catch (const std::exception &error) {
         throw Error(fmt::format("{}: cannot be read as OpenEXR: {}", file.string(), error.what()));
     }

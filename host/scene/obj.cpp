@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/read_file.h"
 #include "scene/values.h"
 #include "scene/xml.h"
 

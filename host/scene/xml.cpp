@@ -1,15 +1,13 @@
 #include "scene/xml.h"
 
 #include "base/error.h"
+#include "base/read_file.h"
 #include "base/table.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <sstream>
 
 namespace opal {
 
@@ -37,20 +35,6 @@ std::vector<XmlNode> elements_of(const XmlDocument &document, pugi::xml_node par
 }
 
 } // namespace
-
-std::string read_file(const std::filesystem::path &file) {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(file, ignored))
-        throw Error(file.string() + ": is a folder, not a file");
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream)
-        throw Error(file.string() + ": cannot read: " + std::strerror(errno));
-    std::ostringstream bytes;
-    bytes << stream.rdbuf();
-    if (stream.bad())
-        throw Error(file.string() + ": cannot read: " + std::strerror(errno));
-    return std::move(bytes).str();
-}
 
 SourcePlace place_in(const std::string &file, std::string_view text, ptrdiff_t offset) {
     auto end = text.begin() + std::clamp<ptrdiff_t>(offset, 0, ptrdiff_t(text.size()));
@@ -90,6 +74,8 @@ XmlDocument::XmlDocument(const std::filesystem::path &file, std::string text)
     // As a fragment, so that text and second roots beside the root are seen instead of skipped.
     pugi::xml_parse_result result = document_.load_buffer(
         text_.data(), text_.size(), pugi::parse_default | pugi::parse_fragment, pugi::encoding_utf8);
+    if (result.status == pugi::status_out_of_memory)
+        cannot_read(file, ENOMEM);
     if (!result)
         fail_at(place(result.offset), std::string("not well-formed XML: ") + result.description());
 }

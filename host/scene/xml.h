@@ -13,9 +13,6 @@
 
 namespace opal {
 
-// The whole file as bytes; throws Error that names the file.
-std::string read_file(const std::filesystem::path &file);
-
 // Line and column of a byte offset in a file's text, from 1; columns count characters of UTF-8.
 SourcePlace place_in(const std::string &file, std::string_view text, ptrdiff_t offset);
 

@@ -1,14 +1,13 @@
 #include "sweep/page.h"
 
 #include "base/base64.h"
+#include "base/read_file.h"
 #include "sweep/svg.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 namespace opal {
 
@@ -91,9 +90,8 @@ std::string table(const SweepSummary &summary) {
 }
 
 std::string embedded(const std::filesystem::path &png, const std::string &what) {
-    std::ifstream stream(png, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-    return fmt::format("<div class='lens'><img alt=\"{}\" title=\"{}\" src=\"data:image/png;base64,{}\"></div>", what, what, base64(bytes));
+    return fmt::format("<div class='lens'><img alt=\"{}\" title=\"{}\" src=\"data:image/png;base64,{}\"></div>", what,
+                       what, base64(read_file(png)));
 }
 
 std::string pictures(const SweepSummary &summary, const std::filesystem::path &folder) {

@@ -1,12 +1,11 @@
 #include "sweep/record.h"
 
 #include "base/error.h"
+#include "base/read_file.h"
 #include "image/image.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include <fstream>
 
 namespace opal {
 
@@ -32,9 +31,8 @@ StrategyRecord &SweepRecord::strategy(const std::string &name, const std::string
 
 SweepRecord load_record(const std::filesystem::path &folder) {
     const std::filesystem::path file = folder / "sweep.json";
-    std::ifstream stream(file);
     try {
-        return nlohmann::json::parse(stream).get<SweepRecord>();
+        return nlohmann::json::parse(read_file(file)).get<SweepRecord>();
     } catch (const nlohmann::json::exception &error) {
         throw Error(fmt::format("{}: is no sweep that could be continued ({}); give another folder with -o", file.string(), error.what()));
     }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace opal {
@@ -188,12 +189,14 @@ private:
         const Point &last = s.points.back();
         const unsigned spp = unsigned(std::fmax(1, std::round(last.spp * picture_seconds() / last.replicates[0].seconds)));
         const std::filesystem::path stem = plan_.folder / ("equal_time_" + std::to_string(&s - record_.strategies.data() + 1));
-        if (s.shot.spp == spp && std::filesystem::exists(stem.string() + "_error.png"))
+        const std::array files = {stem.string() + ".exr", stem.string() + ".png", stem.string() + "_error.png"};
+        if (s.shot.spp == spp &&
+            std::ranges::all_of(files, [](const std::string &file) { return std::filesystem::exists(file); }))
             return;
         const Measured::Rendered r = compiled(c).render(spp, plan_.seed + 1);
-        write_exr(r.image, stem.string() + ".exr");
-        write_png(r.image, stem.string() + ".png");
-        write_png(error_map(reference_, r.image), stem.string() + "_error.png");
+        write_exr(r.image, files[0]);
+        write_png(r.image, files[1]);
+        write_png(error_map(reference_, r.image), files[2]);
         s.shot = {spp, r.seconds, error_against(reference_, r.image).rel_mse, stem.filename().string()};
         keep();
     }

@@ -1,5 +1,6 @@
 // The figures and the page of a sweep, from replicates whose truth is known.
 #include "base/base64.h"
+#include "support/scratch.h"
 #include "sweep/page.h"
 #include "sweep/reference.h"
 #include "sweep/svg.h"
@@ -9,6 +10,7 @@
 #include <random>
 
 using namespace opal;
+using opal::test::ScratchFolder;
 
 namespace {
 
@@ -57,7 +59,9 @@ TEST_CASE("Slope, cost, ratios and bias of replicates whose truth is known", "[s
 
 TEST_CASE("The page is one file whose text is escaped", "[sweep_page]") {
     const SweepRecord record = record_of();
-    const std::string page = html_page(record, summarise(record), ".");
+    const ScratchFolder folder;
+    folder.write("reference.png", "a picture");
+    const std::string page = html_page(record, summarise(record), folder.path());
     CHECK_THAT(page, Catch::Contains("slow &amp; steady needs ") && Catch::Contains("quick is the fastest") && Catch::Contains("a&lt;b&gt;"));
     CHECK(page.find("<b>.xml") == std::string::npos);
     for (const char *outside : {"http", "src=\"/", "<link", "@import", ">nan", " nan", "-nan", ">inf", " inf "}) {
@@ -65,6 +69,14 @@ TEST_CASE("The page is one file whose text is escaped", "[sweep_page]") {
         INFO(page.substr(std::max<size_t>(std::min(found, page.size()), 60) - 60, 120));
         CHECK(found == std::string::npos);
     }
+}
+
+TEST_CASE("A picture that cannot be read is no empty picture", "[sweep_page]") {
+    const SweepRecord record = record_of();
+    const ScratchFolder folder;
+    std::filesystem::create_symlink("/proc/self/mem", folder / "reference.png"); // EIO
+    CHECK_THROWS_WITH(html_page(record, summarise(record), folder.path()),
+                      (folder / "reference.png").string() + ": cannot read: Input/output error");
 }
 
 TEST_CASE("An error map's inputs: the reference's variance is subtracted without bias", "[sweep_page]") {

@@ -1,0 +1,106 @@
+// Reading files: what fails on the way is said by name, whoever reads, and never taken for the file's end.
+#include "base/read_file.h"
+#include "image/image.h"
+#include "support/error_of.h"
+#include "support/scratch.h"
+#include "sweep/record.h"
+
+#include <catch2/catch.hpp>
+
+#include <fstream>
+#include <sys/stat.h>
+#include <thread>
+
+using namespace opal;
+using namespace opal::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+// A regular file whose first byte cannot be read: address 0 of a process. EIO, as a failing disk has it.
+const char *const unreadable = "/proc/self/mem";
+const std::string reason = ": cannot read: Input/output error";
+
+// A scene whose mesh is `obj`.
+std::string scene_of(const std::string &obj) {
+    return "<scene><integrator type='path_mis'/><camera type='perspective'/>"
+           "<mesh type='obj'><string name='filename' value='" +
+           obj + "'/></mesh></scene>";
+}
+
+void check_fails(const std::string &arguments, const std::string &message) {
+    const Outcome outcome = run_shell(OPAL_BINARY " " + arguments);
+    INFO(arguments << "\n" << outcome.out << outcome.err);
+    CHECK(outcome.exit_code == 1);
+    CHECK_THAT(outcome.err, Catch::Contains("error: " + message));
+}
+
+} // namespace
+
+TEST_CASE("A file is read whole, be it empty, long or a pipe that delivers piece by piece", "[read_file]") {
+    const ScratchFolder folder;
+    CHECK(read_file(folder.write("empty", "")).empty());
+    std::string text;
+    for (int i = 0; i < 60000; i++)
+        text += std::to_string(i) + '\n' + '\0';
+    CHECK(read_file(folder.write("long", text)) == text);
+    const fs::path pipe = folder / "pipe";
+    REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+    std::thread writer([&] { std::ofstream(pipe, std::ios::binary) << text; });
+    CHECK(read_file(pipe) == text);
+    writer.join();
+}
+
+TEST_CASE("What cannot be read is an error with its name and reason", "[read_file]") {
+    const ScratchFolder folder;
+    CHECK(error_of([&] { read_file(folder / "none"); }) ==
+          (folder / "none").string() + ": cannot read: No such file or directory");
+    CHECK(error_of([&] { read_file(folder.path()); }) == folder.path().string() + ": is a folder, not a file");
+    CHECK(error_of([&] { read_file(unreadable); }) == unreadable + reason);
+}
+
+TEST_CASE("A file that ends before its size is an error", "[read_file]") {
+    const char *const shorter = "/sys/devices/system/cpu/online"; // the kernel says 4096 bytes of each such file
+    std::error_code error;
+    if (fs::file_size(shorter, error) != 4096 || error) {
+        WARN("there is no /sys here: a file that ends early is not tried");
+        return;
+    }
+    CHECK_THAT(error_of([&] { read_file(shorter); }),
+               Catch::Matches(".*online: cannot read: it ended after [0-9]+ of 4096 bytes"));
+}
+
+TEST_CASE("A read error of any file that Opal reads ends the command, with the file's name", "[read_file]") {
+    const ScratchFolder folder;
+    const std::string scene = folder.write("scene.xml", scene_of(unreadable));
+    check_fails("inspect " + scene, unreadable + reason + " (the mesh at " + scene);
+    check_fails("inspect " + std::string(unreadable), unreadable + reason);
+    check_fails("test " + std::string(unreadable), unreadable + reason);
+
+    write_exr(Image{1, 1, {{"R", {0}}, {"G", {0}}, {"B", {0}}}, {}}, folder / "image.exr");
+    check_fails("compare " + (folder / "image.exr").string() + " " + unreadable, unreadable + reason);
+
+    fs::copy(OPAL_SOURCE_DIR "/cl", folder / "cl", fs::copy_options::recursive);
+    fs::remove(folder / "cl/film.cl");
+    fs::create_symlink(unreadable, folder / "cl/film.cl");
+    check_fails("inspect " OPAL_SOURCE_DIR "/scenes/cbox_mis.xml --cl --cl-dir " + (folder / "cl").string(),
+                (folder / "cl/film.cl").string() + reason);
+
+    fs::create_symlink(unreadable, folder / "sweep.json");
+    CHECK(error_of([&] { load_record(folder.path()); }) == (folder / "sweep.json").string() + reason);
+}
+
+TEST_CASE("A mesh for which memory is short is an error, not a part of it", "[read_file]") {
+#ifdef __SANITIZE_ADDRESS__
+    WARN("AddressSanitizer needs all addresses: short memory is not tried");
+#else
+    const ScratchFolder folder;
+    const fs::path obj = folder.write("large.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n#");
+    fs::resize_file(obj, 1u << 30); // a comment of zeros, of which the disk holds nothing
+    const std::string scene = folder.write("scene.xml", scene_of(obj.string()));
+    const Outcome outcome = run_shell("ulimit -v 600000; " OPAL_BINARY " inspect " + scene);
+    INFO(outcome.out << outcome.err);
+    CHECK(outcome.exit_code == 1);
+    CHECK_THAT(outcome.err, Catch::Contains("error: " + obj.string() + ": cannot read: Cannot allocate memory"));
+#endif
+}
