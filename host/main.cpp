@@ -1,14 +1,18 @@
 // Picks the command. The only place that prints an error and exits.
 #include "base/command_line.h"
 #include "base/error.h"
+#include "base/log.h"
 #include "commands/commands.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <map>
 #include <new>
+#include <sstream>
 
 namespace opal {
 namespace {
@@ -82,24 +86,37 @@ int run(int argc, char **argv) {
     try {
         app.parse(arguments(argc, argv));
     } catch (const CLI::Success &asked) { // --help, --version
-        return app.exit(asked);
+        std::ostringstream text;
+        const int code = app.exit(asked, text, text);
+        print_text(text.str());
+        return code;
     } catch (const CLI::ParseError &error) {
         throw Error(fmt::format("{} (opal --help, or opal COMMAND --help, lists what there is)", error.what()));
     }
     return runs.at(app.get_subcommands().front())();
 }
 
+// A result that stdout did not take is an error; one that nobody read to its end (| head) needs no words.
+int exit_code_after_output(int code) {
+    const int error = output_error();
+    if (error && error != EPIPE)
+        tell_error(fmt::format("stdout: cannot be written: {}", std::strerror(error)).c_str());
+    return error && code == 0 ? 1 : code;
+}
+
 } // namespace
 } // namespace opal
 
 int main(int argc, char **argv) {
+    opal::prepare_streams();
     opal::set_command_line(argc, argv);
+    int code = 1;
     try {
-        return opal::run(argc, argv);
+        code = opal::run(argc, argv);
     } catch (const std::bad_alloc &) {
-        fmt::print(stderr, "error: out of memory on the host\n");
+        opal::tell_error("out of memory on the host");
     } catch (const std::exception &error) {
-        fmt::print(stderr, "error: {}\n", error.what());
+        opal::tell_error(error.what());
     }
-    return 1;
+    return opal::exit_code_after_output(code);
 }

@@ -1,12 +1,21 @@
 #include "base/log.h"
 
-#include <fmt/core.h>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+
+#include <fcntl.h>
 
 namespace opal {
 
 namespace {
+
 bool quiet_chosen = false, verbose_chosen = false;
 std::vector<std::string> kept_warnings;
+int first_output_error = 0;
+
+void say(const char *prefix, const char *line) { std::fprintf(stderr, "%s%s\n", prefix, line); }
+
 } // namespace
 
 void set_quiet(bool quiet) { quiet_chosen = quiet; }
@@ -14,21 +23,49 @@ bool is_quiet() { return quiet_chosen; }
 
 void info(const std::string &line) {
     if (!quiet_chosen)
-        fmt::print(stderr, "{}\n", line);
+        say("", line.c_str());
 }
 
 void set_verbose(bool verbose) { verbose_chosen = verbose; }
 
 void detail(const std::string &text) {
     if (verbose_chosen)
-        fmt::print(stderr, "{}\n", text);
+        say("", text.c_str());
 }
 
 void warn(const std::string &line) {
     kept_warnings.push_back(line);
-    fmt::print(stderr, "warning: {}\n", line);
+    say("warning: ", line.c_str());
 }
 
 const std::vector<std::string> &warnings() { return kept_warnings; }
+
+void tell_error(const char *line) { say("error: ", line); }
+
+void show(const std::string &text) { std::fputs(text.c_str(), stderr); }
+
+void print_text(const std::string &text) {
+    errno = 0;
+    const bool taken = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+    if (!taken && first_output_error == 0)
+        first_output_error = errno ? errno : EIO;
+}
+
+int output_error() { return first_output_error; }
+
+void prepare_streams() {
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
+    // stdin and stdout are opened the wrong way round, so that using them still fails; /dev/full fails through
+    // /dev/stdout, too.
+    struct Stream {
+        const char *file;
+        int mode;
+    };
+    constexpr Stream closed[] = {{"/dev/null", O_WRONLY}, {"/dev/full", O_RDONLY}, {"/dev/null", O_WRONLY}};
+    for (int descriptor = 0; descriptor < 3; descriptor++)
+        if (fcntl(descriptor, F_GETFD) < 0 && errno == EBADF)
+            (void)!open(closed[descriptor].file, closed[descriptor].mode); // gets the lowest number that is free
+}
 
 } // namespace opal

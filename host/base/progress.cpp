@@ -59,7 +59,7 @@ Progress::Progress(std::string what, double total, std::string unit)
 
 Progress::~Progress() {
     if (bar_ && !silent_)
-        fmt::print(stderr, "{}", clear_line);
+        show(clear_line);
 }
 
 void Progress::update(double done) {
@@ -67,7 +67,7 @@ void Progress::update(double done) {
         return;
     said_ = Clock::now();
     const std::string line = progress_line(what_, unit_, done, total_, since(start_), bar_);
-    fmt::print(stderr, "{}{}{}", bar_ ? clear_line : "", line, bar_ ? "" : "\n");
+    show(bar_ ? clear_line + line : line + "\n");
 }
 
 } // namespace opal

@@ -1,14 +1,14 @@
 // opal bench: how fast a scene's rays and paths are on this device.
-#include "bench/rays.h"
-#include "bench/renders.h"
+#include "base/json.h"
 #include "base/log.h"
 #include "base/table.h"
+#include "bench/rays.h"
+#include "bench/renders.h"
 #include "commands/commands.h"
 #include "commands/options.h"
 #include "image/image.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <bit>
 #include <chrono>
@@ -73,7 +73,7 @@ template <class T> std::string bytes_of(const std::vector<T> &rows) {
     return std::string(reinterpret_cast<const char *>(rows.data()), rows.size() * sizeof(T));
 }
 
-void dump(const RayOptions &o, const FlatScene &flat, const RaySet &set, const RayTimes &times) {
+void write_dumps(const RayOptions &o, const FlatScene &flat, const RaySet &set, const RayTimes &times) {
     static_assert(std::endian::native == std::endian::little && sizeof(RayHit) == 16);
     if (!o.dump_rays.empty())
         write_safely(o.dump_rays, bytes_of(set.rays));
@@ -144,15 +144,17 @@ int run_rays(const RayOptions &o) {
         if (!o.kind.empty()) {
             report.update(row);
             report["kind"] = name;
-            dump(o, flat, set, times);
+            write_dumps(o, flat, set, times);
         }
         const Spread &rate = times.mrays_per_second;
-        fmt::print("{:<8}{:.4g} [{:.4g}, {:.4g}] Mrays/s, {:.4g} a CPU-second, {} rays, {:.3g} % hit, {:.4g} nodes and {:.4g} triangles tested a ray\n",
-                   name, rate.median, rate.least, rate.greatest, times.mrays_per_cpu_second.median, set.rays.size(), 100 * times.hit_share, times.node_tests, times.triangle_tests);
+        print("{:<8}{:.4g} [{:.4g}, {:.4g}] Mrays/s, {:.4g} a CPU-second, {} rays, {:.3g} % hit, {:.4g} nodes and "
+              "{:.4g} triangles tested a ray\n",
+              name, rate.median, rate.least, rate.greatest, times.mrays_per_cpu_second.median, set.rays.size(),
+              100 * times.hit_share, times.node_tests, times.triangle_tests);
     }
     report["compile_seconds"] = bench.compile_seconds();
     if (!o.json.empty())
-        write_safely(o.json, report.dump(2) + "\n");
+        write_safely(o.json, dump(report, 2) + "\n");
     return 0;
 }
 
@@ -197,8 +199,8 @@ std::string spread_text(const Spread &s, double unit = 1) {
 
 // A variant beside the base: a line of text and of JSON.
 json told(const std::string &name, const Race &race) {
-    fmt::print("{:<28}{} M paths/s a CPU-second, {} times the time, compiled in {:.3g} s\n", name, spread_text(race.rates.paths_per_cpu_second, 1e6),
-               spread_text(race.time), race.compile_seconds);
+    print("{:<28}{} M paths/s a CPU-second, {} times the time, compiled in {:.3g} s\n", name,
+          spread_text(race.rates.paths_per_cpu_second, 1e6), spread_text(race.time), race.compile_seconds);
     return {{"paths_per_second", spread_json(race.rates.paths_per_second)},
             {"paths_per_cpu_second", spread_json(race.rates.paths_per_cpu_second)},
             {"time", spread_json(race.time)},
@@ -222,11 +224,12 @@ int run_renders(const RenderBenchOptions &o) {
     const PathRates rates = bench.rates();
     const PathCounts counts = bench.counts();
     const double rays = counts.rays + counts.shadow_rays;
-    fmt::print("{:<28}{} M/s, {} M a CPU-second ({} spp a run)\n", "paths", spread_text(rates.paths_per_second, 1e6),
-               spread_text(rates.paths_per_cpu_second, 1e6), bench.spp());
-    fmt::print("{:<28}{:.4g} M/s: {:.3g} rays and {:.3g} shadow rays a path\n", "rays", rays * rates.paths_per_second.median / 1e6, counts.rays,
-               counts.shadow_rays);
-    fmt::print("{:<28}{:.3g} % on average\n{:<28}{:.3g} s cold, {:.3g} s warm\n", "lanes busy", 100 * counts.lanes_busy, "compilation", cold, warm);
+    print("{:<28}{} M/s, {} M a CPU-second ({} spp a run)\n", "paths", spread_text(rates.paths_per_second, 1e6),
+          spread_text(rates.paths_per_cpu_second, 1e6), bench.spp());
+    print("{:<28}{:.4g} M/s: {:.3g} rays and {:.3g} shadow rays a path\n", "rays",
+          rays * rates.paths_per_second.median / 1e6, counts.rays, counts.shadow_rays);
+    print("{:<28}{:.3g} % on average\n{:<28}{:.3g} s cold, {:.3g} s warm\n", "lanes busy", 100 * counts.lanes_busy,
+          "compilation", cold, warm);
 
     json report = scene_json(scene, flat, pick.info, build.lanes);
     report.update({{"spp", bench.spp()},
@@ -247,8 +250,9 @@ int run_renders(const RenderBenchOptions &o) {
         shading -= share;
     }
     report["share"]["shading"] = shading;
-    fmt::print("{:<28}{:.3g} % traversal, {:.3g} % random numbers, {:.3g} % shading and all else\n", "share of time",
-               100 * report["share"]["traversal"].get<double>(), 100 * report["share"]["sampling"].get<double>(), 100 * shading);
+    print("{:<28}{:.3g} % traversal, {:.3g} % random numbers, {:.3g} % shading and all else\n", "share of time",
+          100 * report["share"]["traversal"].get<double>(), 100 * report["share"]["sampling"].get<double>(),
+          100 * shading);
     for (int lanes : {1, 4, 8, 16}) {
         if (pick.info.type == "gpu" && lanes > pick.info.native_lanes)
             continue; // minutes of compilation for widths that a GPU never renders with
@@ -260,7 +264,7 @@ int run_renders(const RenderBenchOptions &o) {
     anything.strategy.specialise = false;
     report["general"] = told("general kernel", bench.race(flatten(anything, build.lanes), build));
     if (!o.json.empty())
-        write_safely(o.json, report.dump(2) + "\n");
+        write_safely(o.json, dump(report, 2) + "\n");
     return 0;
 }
 

@@ -1,14 +1,13 @@
 // opal compare: an image held against another.
 #include "base/error.h"
+#include "base/json.h"
 #include "base/log.h"
 #include "commands/commands.h"
 #include "commands/evidence.h"
 #include "image/metrics.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include <iostream>
 #include <limits>
 #include <optional>
 
@@ -102,7 +101,7 @@ nlohmann::json json_of(const stats::TileTest &t, double significance) {
 
 void tell(const Metrics &m) {
     const auto line = [](const char *name, double value, const std::string &what) {
-        std::cout << fmt::format("{:<8}{:<13.6g}{}\n", name, value, what);
+        print("{:<8}{:<13.6g}{}\n", name, value, what);
     };
     line("MSE", m.mse, "mean of d^2, d = A - B, over pixels and R, G, B");
     line("RMSE", m.rmse, "its root");
@@ -117,9 +116,9 @@ void tell(const Metrics &m) {
 }
 
 void tell(const stats::TileTest &t, double significance) {
-    std::cout << fmt::format("Welch, tiles of {0} x {0} pixels and the whole image, Sidak over all: {1}\n{2} at the level {3:g}\n",
-                             t.size, describe(t),
-                             t.rejected(significance) ? "The means differ" : "No difference of the means was found", significance);
+    print("Welch, tiles of {0} x {0} pixels and the whole image, Sidak over all: {1}\n{2} at the level {3:g}\n", t.size,
+          describe(t), t.rejected(significance) ? "The means differ" : "No difference of the means was found",
+          significance);
 }
 
 int run(const Options &o) {
@@ -152,12 +151,12 @@ int run(const Options &o) {
     } else {
         report["untested"] = untested;
         if (!o.quiet)
-            std::cout << "No test of the means: " << untested << "\n";
+            print("No test of the means: {}\n", untested);
     }
     if (!o.out.empty())
         write_map(o.out, image, reference, test ? &*test : nullptr);
     if (!o.json.empty())
-        write_safely(o.json, report.dump(2) + "\n");
+        write_safely(o.json, dump(report, 2) + "\n");
     return 0;
 }
 

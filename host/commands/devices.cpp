@@ -1,3 +1,4 @@
+#include "base/log.h"
 #include "commands/commands.h"
 #include "device/buffers.h"
 #include "device/info_json.h"
@@ -38,15 +39,16 @@ std::string unused_of(const DeviceInfo &d) {
 
 void print_table(const std::vector<DeviceInfo> &devices) {
     constexpr const char *row = "{:>5}  {:<11}  {:>5}  {:>10}  {:>4}  {:>5}  {}\n";
-    fmt::print(row, "index", "type", "units", "memory", "fp64", "lanes", "name");
+    print(row, "index", "type", "units", "memory", "fp64", "lanes", "name");
     for (const DeviceInfo &d : devices) {
         if (!d.problem.empty()) {
-            fmt::print("{:>5}  {}{}: {}\n", d.index, d.platform, d.name.empty() ? "" : ", " + d.name, d.problem);
+            print("{:>5}  {}{}: {}\n", d.index, d.platform, d.name.empty() ? "" : ", " + d.name, d.problem);
             continue;
         }
-        fmt::print(row, d.index, d.type, d.compute_units, memory_text(d.memory), d.fp64 ? "yes" : "no", d.native_lanes, d.name);
-        fmt::print("{:>7}{}; {}; driver {}\n", "", d.platform, d.version, d.driver);
-        fmt::print("{:>7}used: {}\n{:>7}not used: {}\n", "", used_of(d), "", unused_of(d));
+        print(row, d.index, d.type, d.compute_units, memory_text(d.memory), d.fp64 ? "yes" : "no", d.native_lanes,
+              d.name);
+        print("{:>7}{}; {}; driver {}\n", "", d.platform, d.version, d.driver);
+        print("{:>7}used: {}\n{:>7}not used: {}\n", "", used_of(d), "", unused_of(d));
     }
 }
 
@@ -56,11 +58,11 @@ int run_devices(const DevicesOptions &options) {
         print_table(devices);
     const DevicePick pick = pick_device(options.device, devices);
     if (!options.json) {
-        fmt::print("\nrender takes {}: {} ({}). --device takes an index, cpu, gpu, or part of a name.\n", pick.info.index,
-                   pick.info.name, pick.reason);
+        print("\nrender takes {}: {} ({}). --device takes an index, cpu, gpu, or part of a name.\n", pick.info.index,
+              pick.info.name, pick.reason);
         return 0;
     }
-    fmt::print("{}\n", dump({{"devices", devices}, {"pick", pick.info.index}, {"reason", pick.reason}}, 2));
+    print("{}\n", dump({{"devices", devices}, {"pick", pick.info.index}, {"reason", pick.reason}}, 2));
     return 0;
 }
 

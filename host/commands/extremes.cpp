@@ -1,5 +1,6 @@
 // opal extremes: where does single precision end? Scenes stretched over many decades, single against double precision.
 #include "base/error.h"
+#include "base/json.h"
 #include "base/log.h"
 #include "base/table.h"
 #include "commands/commands.h"
@@ -7,9 +8,6 @@
 #include "extremes/report.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include <iostream>
 
 namespace opal {
 
@@ -36,7 +34,7 @@ std::vector<const extremes::Row *> chosen(const std::vector<std::string> &names)
 int run(ExtremesOptions o) {
     if (o.list) {
         for (const extremes::Row &row : extremes::rows())
-            std::cout << fmt::format("{:<18}{}\n", row.name, row.stretched);
+            print("{:<18}{}\n", row.name, row.stretched);
         return 0;
     }
     const auto rows = chosen(o.names);
@@ -61,12 +59,12 @@ int run(ExtremesOptions o) {
     bool kept = true;
     for (const extremes::Row *row : rows) {
         sweeps.push_back(extremes::sweep(*row, device, o.how, o.quick ? 3 : 1));
-        std::cout << extremes::table_of(sweeps.back()) << std::flush;
+        print_text(extremes::table_of(sweeps.back()));
         report["rows"].push_back(extremes::json_of(sweeps.back()));
         kept = kept && sweeps.back().kept;
     }
     if (!o.json.empty())
-        write_safely(o.json, report.dump(2) + "\n");
+        write_safely(o.json, dump(report, 2) + "\n");
     if (!o.plot.empty())
         write_safely(o.plot, extremes::svg_of(sweeps));
     return kept ? 0 : 1;

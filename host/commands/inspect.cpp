@@ -29,7 +29,7 @@ int host_vector_width() {
 }
 
 template <class... Arguments> void row(const char *name, fmt::format_string<Arguments...> text, Arguments &&...arguments) {
-    fmt::print("{:<12}{}\n", name, fmt::format(text, std::forward<Arguments>(arguments)...));
+    print("{:<12}{}\n", name, fmt::format(text, std::forward<Arguments>(arguments)...));
 }
 
 std::string color_text(const Color &c) { return fmt::format("{:g} {:g} {:g}", c[0], c[1], c[2]); }
@@ -89,24 +89,24 @@ void print_scene(const SceneDescription &scene, const FlatScene &flat) {
 
 void print_strategy(const SceneDescription &scene, int lanes) {
     const Strategy &strategy = scene.strategy;
-    fmt::print("\nstrategy, after overrides (the scene's integrator: {})\n", scene.integrator_type);
+    print("\nstrategy, after overrides (the scene's integrator: {})\n", scene.integrator_type);
     for (int axis = 0; axis < AXIS_COUNT; ++axis)
-        fmt::print("  {:<18}{}\n", axes()[axis].name, axes()[axis].choices[strategy[axis]].name);
-    fmt::print("  {:<18}{}\n", "max-depth", strategy.max_depth == no_limit ? "none" : std::to_string(strategy.max_depth));
-    fmt::print("  {:<18}{}\n  {:<18}{:g}\n", "rr-depth", strategy.rr_depth, "rr-prob", strategy.rr_prob);
-    fmt::print("  {:<18}{}\n", "math", name_of(strategy.math));
-    fmt::print("  {:<18}{}{}\n", "lanes", lanes,
-               strategy.lanes ? "" : " (auto: what a CPU device here would take; no device was asked, a GPU takes 1)");
-    fmt::print("  {:<18}{}\n", "specialise", strategy.specialise ? "on" : "off");
+        print("  {:<18}{}\n", axes()[axis].name, axes()[axis].choices[strategy[axis]].name);
+    print("  {:<18}{}\n", "max-depth", strategy.max_depth == no_limit ? "none" : std::to_string(strategy.max_depth));
+    print("  {:<18}{}\n  {:<18}{:g}\n", "rr-depth", strategy.rr_depth, "rr-prob", strategy.rr_prob);
+    print("  {:<18}{}\n", "math", name_of(strategy.math));
+    print("  {:<18}{}{}\n", "lanes", lanes,
+          strategy.lanes ? "" : " (auto: what a CPU device here would take; no device was asked, a GPU takes 1)");
+    print("  {:<18}{}\n", "specialise", strategy.specialise ? "on" : "off");
 }
 
 void print_buffers(const FlatScene &flat) {
     unsigned long long all = 0;
-    fmt::print("\nbuffers\n");
+    print("\nbuffers\n");
     const auto table = [&](const char *name, const auto &rows) {
         const unsigned long long bytes = rows.size() * sizeof(rows[0]);
         all += bytes;
-        fmt::print("  {:<18}{:>10} rows {:>12}\n", name, rows.size(), bytes_text(bytes));
+        print("  {:<18}{:>10} rows {:>12}\n", name, rows.size(), bytes_text(bytes));
     };
     table("nodes", flat.nodes);
     table("blocks", flat.blocks);
@@ -118,18 +118,18 @@ void print_buffers(const FlatScene &flat) {
     table("bsdfs", flat.bsdfs);
     table("emitters", flat.emitters);
     table("light triangles", flat.light_triangles);
-    fmt::print("  {:<18}{:>15} {:>12}\n", "in all", "", bytes_text(all));
+    print("  {:<18}{:>15} {:>12}\n", "in all", "", bytes_text(all));
 }
 
 void print_features(const Features &features) {
-    fmt::print("\nfeatures of the kernel\n");
+    print("\nfeatures of the kernel\n");
     for (const Feature &feature : features.list)
-        fmt::print("  {:<22}{:<5}{}\n", feature.name, feature.on ? "in" : "out", feature.reason);
-    fmt::print("\naxes of the kernel\n");
+        print("  {:<22}{:<5}{}\n", feature.name, feature.on ? "in" : "out", feature.reason);
+    print("\naxes of the kernel\n");
     for (int axis = 0; axis < AXIS_COUNT; ++axis) {
         const int choice = features.axes[axis];
-        fmt::print("  {:<22}{} ({})\n", axes()[axis].name, choice < 0 ? "at run time" : axes()[axis].choices[choice].name,
-                   features.axis_reasons[axis]);
+        print("  {:<22}{} ({})\n", axes()[axis].name, choice < 0 ? "at run time" : axes()[axis].choices[choice].name,
+              features.axis_reasons[axis]);
     }
 }
 
@@ -142,17 +142,18 @@ void print_savings(const InspectOptions &options, const SceneDescription &scene)
     const FlatScene flat = flatten(scene, build.lanes);
     const Sources sources = load_sources(options.scene);
     RenderBench bench(open_device(pick.info), flat, build, sources, 0.5, 5);
-    fmt::print("\nsaved by what is left out ({}, {} lanes; time with it over time without, 5 rounds)\n", pick.info.name, build.lanes);
+    print("\nsaved by what is left out ({}, {} lanes; time with it over time without, 5 rounds)\n", pick.info.name,
+          build.lanes);
     for (const Feature &feature : flat.features.list) {
         if (feature.on)
             continue;
         if (flat.emitters.empty() && feature.name.starts_with("emitter_")) {
-            fmt::print("  {:<22}not to be measured: there is no emitter to sample\n", feature.name);
+            print("  {:<22}not to be measured: there is no emitter to sample\n", feature.name);
             continue;
         }
         const Race race = bench.race(with_feature(flat, feature.name), build);
-        fmt::print("  {:<22}{:.3f} [{:.3f}, {:.3f}] times, and {:.3g} s to compile\n", feature.name, race.time.median, race.time.least, race.time.greatest,
-                   race.compile_seconds);
+        print("  {:<22}{:.3f} [{:.3f}, {:.3f}] times, and {:.3g} s to compile\n", feature.name, race.time.median,
+              race.time.least, race.time.greatest, race.compile_seconds);
     }
 }
 
@@ -164,7 +165,7 @@ int run_inspect(const InspectOptions &options) {
         BuildOptions build;
         build.lanes = lanes;
         build.math = scene.strategy.math;
-        fmt::print("{}", program_text(flat.features, build, load_sources(options.scene)));
+        print_text(program_text(flat.features, build, load_sources(options.scene)));
         return 0;
     }
     print_scene(scene, flat);

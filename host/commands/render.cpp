@@ -1,5 +1,6 @@
 // opal render: a scene to an EXR and a PNG.
 #include "base/command_line.h"
+#include "base/json.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "base/signals.h"
@@ -225,7 +226,7 @@ int run(const Options &o, const CLI::App &app) {
 
     report["seconds"]["write"] = seconds.write;
     if (!o.json.empty())
-        write_safely(o.json, report.dump(2) + "\n");
+        write_safely(o.json, dump(report, 2) + "\n");
     tell_result(report, film);
     if (rule.given())
         tell_stop(report["stop"], report["spp"].get<double>(), seconds.render);

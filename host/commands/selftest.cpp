@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include <deque>
-#include <iostream>
 #include <sstream>
 
 namespace opal {
@@ -110,10 +109,10 @@ const Finding *find_check(const std::vector<Job> &jobs, size_t variant, const st
 
 // A line a check, a column a variant; "!" marks what failed.
 void print_table(const std::vector<Job> &jobs, const std::vector<Variant> &variants) {
-    std::cout << fmt::format("{:<52}{:>10}", "check", "limit");
+    print("{:<52}{:>10}", "check", "limit");
     for (const Variant &variant : variants)
-        std::cout << fmt::format("{:>13}", variant.name());
-    std::cout << "\n";
+        print("{:>13}", variant.name());
+    print("\n");
     std::vector<std::string> done;
     for (const Job &from : jobs)
         for (const Finding &row : from.findings) {
@@ -125,11 +124,11 @@ void print_table(const std::vector<Job> &jobs, const std::vector<Variant> &varia
                 const Finding *finding = find_check(jobs, v, row.check);
                 line += fmt::format("{:>12}{}", finding ? fmt::format("{:.3g}", finding->figure) : "-", finding && !finding->passed ? "!" : " ");
             }
-            std::cout << fmt::format("{:<52}{:>10}{}\n", row.check, limit, line);
+            print("{:<52}{:>10}{}\n", row.check, limit, line);
         }
     for (const Job &job : jobs)
         if (!job.problem.empty())
-            std::cout << fmt::format("{} at {}: {}\n", job.group->name, variants[job.variant].name(), job.problem);
+            print("{} at {}: {}\n", job.group->name, variants[job.variant].name(), job.problem);
 }
 
 int run(const Options &o) {
@@ -165,9 +164,9 @@ int run(const Options &o) {
             report["checks"].push_back({{"check", job.group->name}, {"lanes", variants[job.variant].lanes}, {"math", variants[job.variant].math},
                                         {"passed", false}, {"problem", job.problem}});
     }
-    std::cout << fmt::format("{}: {} of {} checks passed{}, {:.0f} s\n", failed + problems ? "FAILED" : "passed", checks - failed, checks,
-                             problems ? fmt::format(", {} groups did not end well", problems) : "",
-                             std::chrono::duration<double>(ChildProcess::Clock::now() - begun).count());
+    print("{}: {} of {} checks passed{}, {:.0f} s\n", failed + problems ? "FAILED" : "passed", checks - failed, checks,
+          problems ? fmt::format(", {} groups did not end well", problems) : "",
+          std::chrono::duration<double>(ChildProcess::Clock::now() - begun).count());
     if (!o.json.empty())
         write_safely(o.json, dump(report, 2) + "\n");
     return failed + problems ? 1 : 0;
@@ -188,9 +187,10 @@ int run_group(const std::vector<std::string> &words) {
         options.seed = unsigned(std::stoul(words[5]));
         options.sources = &sources;
         for (const Finding &f : group.run(device, options))
-            std::cout << line_mark << nlohmann::json{{"check", f.check}, {"figure", f.figure}, {"limit", f.limit}, {"passed", f.passed}}.dump() << std::endl;
+            print("{}{}\n", line_mark,
+                  dump({{"check", f.check}, {"figure", f.figure}, {"limit", f.limit}, {"passed", f.passed}}));
     } catch (const std::exception &error) {
-        std::cout << line_mark << dump({{"problem", error.what()}}, -1) << std::endl;
+        print("{}{}\n", line_mark, dump({{"problem", error.what()}}));
     }
     return 0;
 }

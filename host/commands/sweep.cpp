@@ -1,5 +1,6 @@
 // opal sweep: error against time of several strategies on one scene.
 #include "base/command_line.h"
+#include "base/json.h"
 #include "base/log.h"
 #include "base/read_file.h"
 #include "base/signals.h"
@@ -14,7 +15,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iostream>
 #include <iterator>
 
 #include <sys/wait.h>
@@ -37,7 +37,7 @@ struct Options {
 // FNV-1a (Fowler, Noll, Vo) over the scene's text, its resolved strategy and its meshes.
 std::string hash_of(const SceneDescription &scene) {
     std::string bytes = read_file(scene.file);
-    bytes += strategy_json(scene).dump();
+    bytes += dump(strategy_json(scene));
     for (const Mesh &mesh : scene.meshes)
         if (const auto *m = std::get_if<TriangleMesh>(&mesh.shape))
             bytes.append(reinterpret_cast<const char *>(m->positions.data()), m->positions.size() * sizeof(Vec3));
@@ -136,7 +136,7 @@ void write_results(const SweepRecord &record, const std::filesystem::path &folde
     write_safely(folder / "convergence.svg", svg_file(convergence_plot(summary)));
     write_safely(folder / "index.html", html_page(record, summary, folder));
     for (const std::string &sentence : verdict(record, summary))
-        std::cout << sentence << "\n";
+        print("{}\n", sentence);
     info(fmt::format("wrote   {}", (folder / "index.html").string()));
 }
 
@@ -166,7 +166,7 @@ int run_part_apart(Part part, const SweepPlan &plan, const DevicePick &pick, con
         try {
             code = run_part(part, plan, pick, candidates, record);
         } catch (const std::exception &error) {
-            fmt::print(stderr, "error: {}\n", error.what());
+            tell_error(error.what());
         }
         _exit(code);
     }

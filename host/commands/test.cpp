@@ -1,4 +1,5 @@
 // opal test: Nori's <test> files on a device.
+#include "base/json.h"
 #include "base/log.h"
 #include "commands/commands.h"
 #include "commands/options.h"
@@ -7,9 +8,6 @@
 #include "trust/conformance.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include <iostream>
 
 namespace opal {
 
@@ -66,18 +64,19 @@ int run(const Options &o) {
         TestDescription &test = tests[i];
         test.sample_count = o.samples ? o.samples : test.sample_count;
         test.significance_level = o.significance > 0 ? o.significance : test.significance_level;
-        std::cout << fmt::format("{} ({}, level {:g})", o.files[i], test.type, test.significance_level) << std::endl;
+        print("{} ({}, level {:g})\n", o.files[i], test.type, test.significance_level);
         nlohmann::json results = nlohmann::json::array();
-        for (const ConformanceCase &c : run_test(test, device, options, [](const ConformanceCase &c) { std::cout << line_of(c) << std::endl; })) {
+        for (const ConformanceCase &c :
+             run_test(test, device, options, [](const ConformanceCase &c) { print("{}\n", line_of(c)); })) {
             results.push_back(json_of(c));
             cases++;
             rejected += !c.passed;
         }
         report["tests"].push_back({{"file", o.files[i]}, {"type", test.type}, {"significance", test.significance_level}, {"cases", results}});
     }
-    std::cout << fmt::format("{} of {} cases passed", cases - rejected, cases) << std::endl;
+    print("{} of {} cases passed\n", cases - rejected, cases);
     if (!o.json.empty())
-        write_safely(o.json, report.dump(2) + "\n");
+        write_safely(o.json, dump(report, 2) + "\n");
     return rejected ? 1 : 0;
 }
 

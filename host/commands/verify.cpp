@@ -1,4 +1,5 @@
 // opal verify: do all unbiased strategies agree on a scene?
+#include "base/json.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "base/signals.h"
@@ -9,9 +10,6 @@
 #include "render/renderer.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include <iostream>
 
 namespace opal {
 
@@ -120,8 +118,8 @@ void leave_evidence(const std::filesystem::path &folder, const Agreement &agreem
     write_evidence(folder, renders[worst.a].image, renders[worst.b].image, worst.test);
     for (size_t i = 0; i < renders.size(); i++)
         write_exr(renders[i].image, folder / fmt::format("strategy_{}.exr", i + 1));
-    write_safely(folder / "verify.json", report.dump(2) + "\n");
-    std::cout << fmt::format("evidence: {} (image: strategy {}, reference: strategy {})\n", folder.string(), worst.a + 1, worst.b + 1);
+    write_safely(folder / "verify.json", dump(report, 2) + "\n");
+    print("evidence: {} (image: strategy {}, reference: strategy {})\n", folder.string(), worst.a + 1, worst.b + 1);
 }
 
 int run(const Options &o) {
@@ -159,11 +157,11 @@ int run(const Options &o) {
     nlohmann::json report = json_of(agreement, renders);
     report.update({{"scene", scene.file.string()}, {"device", pick.info.name}, {"driver", pick.info.driver}, {"seed", o.seed},
                    {"width", scene.camera.width}, {"height", scene.camera.height}, {"budget", o.budget}});
-    std::cout << text_of(agreement, renders) << std::flush;
+    print_text(text_of(agreement, renders));
     if (!agreement.holds() || !o.out.empty())
         leave_evidence(folder, agreement, renders, report);
     if (!o.json.empty())
-        write_safely(o.json, report.dump(2) + "\n");
+        write_safely(o.json, dump(report, 2) + "\n");
     return agreement.holds() ? 0 : 1;
 }
 

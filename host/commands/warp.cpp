@@ -8,8 +8,6 @@
 
 #include <fmt/format.h>
 
-#include <iostream>
-
 namespace opal {
 
 namespace {
@@ -25,21 +23,23 @@ struct Options {
 
 int print_list() {
     for (const TargetName &row : targets())
-        std::cout << fmt::format("{:<20} {}\n", row.name, row.parameters);
+        print("{:<20} {}\n", row.name, row.parameters);
     return 0;
 }
 
 void print_figures(const Target &target, const DensityCheck &check, const Options &o) {
     const stats::TestResult &r = check.test.result;
     const double n = check.histogram.n();
-    std::cout << fmt::format("{}: {:g} samples on {} x {} cells of the {}\n", target.description, n, o.cells, o.cells, target.sampled.domain->name);
-    std::cout << fmt::format("  integral of the pdf  {:.7g} (+- {:.1g})\n", check.test.mass.value, check.test.mass.error);
+    print("{}: {:g} samples on {} x {} cells of the {}\n", target.description, n, o.cells, o.cells,
+          target.sampled.domain->name);
+    print("  integral of the pdf  {:.7g} (+- {:.1g})\n", check.test.mass.value, check.test.mass.error);
     if (target.sampled.may_fail)
-        std::cout << fmt::format("  without a sample     {:.7g} of all draws ({:.7g} expected)\n", check.histogram.failed / n, 1 - check.test.mass.value);
-    std::cout << fmt::format("  outside the domain   {:g}\n", check.histogram.outside);
-    std::cout << fmt::format("  chi-square           {:.6g}, {:g} degrees of freedom, p = {:.4g}\n", r.statistic, r.dof, r.p_value);
-    std::cout << (r.rejected(o.significance) ? fmt::format("REJECTED at level {:g} {}\n", o.significance, r.reason)
-                                             : fmt::format("accepted at level {:g}\n", o.significance));
+        print("  without a sample     {:.7g} of all draws ({:.7g} expected)\n", check.histogram.failed / n,
+              1 - check.test.mass.value);
+    print("  outside the domain   {:g}\n", check.histogram.outside);
+    print("  chi-square           {:.6g}, {:g} degrees of freedom, p = {:.4g}\n", r.statistic, r.dof, r.p_value);
+    print_text(r.rejected(o.significance) ? fmt::format("REJECTED at level {:g} {}\n", o.significance, r.reason)
+                                          : fmt::format("accepted at level {:g}\n", o.significance));
 }
 
 int run(const Options &o) {

@@ -1,6 +1,8 @@
 #include "device/probe.h"
 
+#include "base/log.h"
 #include "base/process.h"
+#include "base/read_file.h"
 #include "device/info_json.h"
 #include "device/load_driver.h"
 
@@ -8,8 +10,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
-#include <iostream>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -74,10 +74,15 @@ std::vector<DeviceInfo> finish_probe(Probe &probe, ChildProcess::Clock::time_poi
     return devices;
 }
 
-// The library that an .icd file names on its first line that is neither blank nor a comment; empty where there is none.
+// The library that an .icd file names on its first line that is neither blank nor a comment; empty where there is none or it cannot be read.
 std::string library_of(const fs::path &icd) {
-    std::ifstream file(icd);
-    for (std::string line; std::getline(file, line);) {
+    std::istringstream lines;
+    try {
+        lines.str(read_file(icd));
+    } catch (const Error &) {
+        return {};
+    }
+    for (std::string line; std::getline(lines, line);) {
         const size_t first = line.find_first_not_of(" \t\r");
         if (first != std::string::npos && line[first] != '#')
             return line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
@@ -151,9 +156,7 @@ std::vector<DeviceInfo> probe_drivers(const std::vector<Driver> &drivers, double
 }
 
 void print_probe(const std::string &library) {
-    for_each_device(library, [](const DeviceInfo &info, const cl::Device &) {
-        std::cout << line_mark << dump(info, -1) << std::endl;
-    });
+    for_each_device(library, [](const DeviceInfo &info, const cl::Device &) { print("{}{}\n", line_mark, dump(info)); });
 }
 
 } // namespace opal

@@ -1,5 +1,6 @@
 #include "render/report.h"
 
+#include "base/json.h"
 #include "base/log.h"
 
 namespace opal {
@@ -49,7 +50,7 @@ json report_json(const SceneDescription &scene, const DeviceInfo &device, int la
 
 void add_metadata(Image &image, const json &report, const std::string &command_line) {
     for (const auto &[key, value] : report.items())
-        image.metadata["opal." + key] = value.is_string() ? value.get<std::string>() : value.dump();
+        image.metadata["opal." + key] = value.is_string() ? value.get<std::string>() : dump(value);
     image.metadata["opal.command_line"] = command_line;
 }
 

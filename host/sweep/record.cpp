@@ -1,11 +1,11 @@
 #include "sweep/record.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/read_file.h"
 #include "image/image.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace opal {
 
@@ -43,11 +43,11 @@ SweepRecord resume(const std::filesystem::path &folder, const SweepRecord &fresh
     if (!std::filesystem::exists(file))
         return fresh;
     SweepRecord kept = load_record(folder);
-    const nlohmann::json was = kept, is = fresh;
+    const nlohmann::json was = kept, is = nlohmann::json::parse(dump(fresh)); // as it would have been kept
     for (const char *key : {"version", "scene_hash", "integrator", "devices", "clock", "width", "height", "reference_file"})
         if (was[key] != is[key])
-            throw Error(fmt::format("{}: holds another sweep ({} was {}, is {}); give another folder with -o", file.string(), key,
-                                    was[key].dump(), is[key].dump()));
+            throw Error(fmt::format("{}: holds another sweep ({} was {}, is {}); give another folder with -o",
+                                    file.string(), key, dump(was[key]), dump(is[key])));
     kept.command = fresh.command;
     kept.replicates = fresh.replicates;
     kept.spp = fresh.spp;
@@ -60,7 +60,7 @@ void save(const SweepRecord &record, const std::filesystem::path &folder, const 
     nlohmann::json j = record;
     if (!summary.is_null())
         j["summary"] = summary;
-    write_safely(folder / "sweep.json", j.dump(1) + "\n");
+    write_safely(folder / "sweep.json", dump(j, 1) + "\n");
 }
 
 } // namespace opal

@@ -102,6 +102,36 @@ TEST_CASE("What cannot be rendered or written is refused, and nothing is left be
     check_refused(place, "--lighting bsdf --mis one-sample", "makes no sense");
 }
 
+TEST_CASE("A message that cannot be printed costs neither image nor JSON", "[render_command]") {
+    for (const char *streams : {"2>/dev/full", "2>&-", ">/dev/full", ">&-", "<&- >&- 2>&-", "2>&1 | true"}) {
+        INFO(streams);
+        const Place place;
+        CHECK(run_shell(place.render(std::string("--json stats.json ") + streams)).exit_code == 0);
+        CHECK(place.files() == 4); // with the scene, and nothing else
+        CHECK(read_exr(place.folder / "plain.exr").get("R").values.front() == Approx(1).epsilon(1e-6));
+        CHECK(nlohmann::json::parse(read_text(place.folder / "stats.json"))["spp"] == 4);
+    }
+}
+
+TEST_CASE("Names of any bytes keep the image and the JSON", "[render_command]") {
+    Place place;
+    place.folder.write(
+        "k\344se.obj",
+        "v -1 -1 4\nv 1 -1 4\nv 0 1 4\nf 1 2 3\nf 1 1 2\n"); // the second has no area: a warning names it
+    std::string text = scene_text;
+    text.insert(text.find("</scene>"), "<mesh type=\"obj\"><string name=\"filename\" value=\"k\344se.obj\"/></mesh>\n");
+    place.scene = place.folder.write("sz\344ne.xml", text);
+    const Outcome outcome = run_shell(place.render("-o b\344r.exr --json stats.json"));
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    const auto stats = nlohmann::json::parse(read_text(place.folder / "stats.json"));
+    CHECK_THAT(stats["scene"].get<std::string>(), Catch::EndsWith("sz\uFFFDne.xml"));
+    CHECK_THAT(stats["warnings"][0].get<std::string>(), Catch::Contains("k\uFFFDse.obj: dropped 1 triangles"));
+    const Image image = read_exr(place.folder / "b\344r.exr");
+    CHECK(image.metadata.at("opal.scene") == place.scene); // the bytes themselves
+    CHECK_THAT(image.metadata.at("opal.warnings"), Catch::Contains("k\uFFFDse.obj"));
+}
+
 TEST_CASE("Ctrl-C writes what there is and exits with a code of its own", "[render_command]") {
     const Place place;
     const std::string started = place.folder / "started";

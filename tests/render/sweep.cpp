@@ -105,6 +105,27 @@ TEST_CASE("The slope of every independent unbiased strategy is -1 within its int
     }
 }
 
+TEST_CASE("Names of any bytes are swept, and gone on with", "[sweep]") {
+    Place place;
+    place.scene = place.folder.write("l\344mp.xml", scene_text);
+    REQUIRE(run_shell("cd " + place.folder.path().string() + " && " OPAL_BINARY " " + place.scene +
+                      " --spp 1 -o r\344f.exr")
+                .exit_code == 0);
+    for (const std::string replicates : {"2", "3"}) {
+        const Outcome outcome = place.sweep(
+            "--strategies lighting=emitter lighting=mis --spp 2 --reference r\344f.exr -o out --replicates " +
+            replicates);
+        INFO(outcome.err);
+        CHECK(outcome.exit_code == 0);
+        CHECK_THAT(place.record()["scene"].get<std::string>(), Catch::EndsWith("l\uFFFDmp.xml"));
+        CHECK(place.record()["strategies"][0]["points"][0]["replicates"].size() == std::stoul(replicates));
+    }
+    std::filesystem::remove(place.folder / "out/equal_time_1.png"); // a picture that is missing is made again
+    CHECK(place.sweep("--strategies lighting=emitter lighting=mis --spp 2 --reference r\344f.exr -o out --replicates 3")
+              .exit_code == 0);
+    CHECK(std::filesystem::exists(place.folder / "out/equal_time_1.png"));
+}
+
 TEST_CASE("What makes no sense is refused before anything is rendered", "[sweep]") {
     const Place place;
     const auto refused = [&](const std::string &arguments, const std::string &reason) {
