@@ -42,23 +42,21 @@ void check_comparable(const Options &o, const Image &image, const Image &referen
             throw Error(fmt::format("the layers differ: {} has no {}, which {} holds", file, missing, other));
 }
 
-// Samples a pixel as opal render wrote them; 0 where the image does not say.
-double samples_of(const Image &image) {
-    const auto found = image.metadata.find("opal.spp");
-    try {
-        return found == image.metadata.end() ? 0 : std::stod(found->second);
-    } catch (const std::exception &) {
-        return 0;
-    }
-}
+// As opal render wrote them; 0 where the image does not say.
+double samples_of(const Image &image) { return image.number("opal.spp"); } // a pixel
+double empty_pixels(const Image &image) { return image.number("opal.empty_pixels"); }
 
 // Why there is no test of the means; empty: there is one.
 std::string why_untested(const std::string &file, const Image &image) {
     for (const char *name : {"variance.R", "variance.G", "variance.B"})
         if (!image.find(name))
             return fmt::format("{} holds no layer {} (opal render --layers variance)", file, name);
+    if (const double empty = empty_pixels(image))
+        return fmt::format("{} has {} pixels without a sample", file, empty);
     if (const double samples = samples_of(image); samples > 0 && samples < 2)
         return fmt::format("{} has one sample a pixel and so no variance", file);
+    if (const double single = image.number("opal.single_sample_pixels"))
+        return fmt::format("{} has {} pixels with one sample and so no variance", file, single);
     return "";
 }
 
@@ -133,6 +131,9 @@ int run(const Options &o) {
         check_writable(o.json);
     const Image image = read_exr(o.image), reference = read_exr(o.reference);
     check_comparable(o, image, reference);
+    for (const auto &[file, read] : {std::pair(o.image, &image), std::pair(o.reference, &reference)})
+        if (const double empty = empty_pixels(*read))
+            warn(fmt::format("{}: {} pixels without a sample; the figures take them for black", file, empty));
 
     const Metrics metrics = compare_images(image, reference);
     nlohmann::json report = json_of(metrics);

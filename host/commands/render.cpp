@@ -75,45 +75,75 @@ StopRule stop_rule(const Options &o) {
     return rule;
 }
 
-// What was asked for and what was reached; the interval holds the true mean luminance with that confidence.
+// What was asked for and what was reached; the interval holds the true mean luminance with that confidence. Errors and
+// interval are null where pixels have no sample: what those would add to the mean is unknown.
 nlohmann::json stop_json(const StopRule &rule, const Stopped &stopped, const Film &film, double seconds) {
     const FilmStatistics s = statistics_of(film);
     const double half = stats::normal_quantile(0.5 + confidence / 2) * s.stderr_luminance;
-    const double reached = s.mean_luminance > 0 ? s.stderr_luminance / s.mean_luminance : 0;
+    const double reached = s.empty_pixels ? INFINITY : s.mean_luminance > 0 ? s.stderr_luminance / s.mean_luminance : 0;
     nlohmann::json j = {{"rule", rule.seconds > 0 ? "time" : "target-error"},
                         {"target", rule.seconds > 0 ? rule.seconds : rule.relative_error},
                         {"reached", rule.seconds > 0 ? seconds : reached},
                         {"relative_error", reached},
                         {"confidence", confidence},
-                        {"mean_luminance_interval", {s.mean_luminance - half, s.mean_luminance + half}}};
+                        {"mean_luminance_interval", nullptr}};
+    if (s.empty_pixels == 0)
+        j["mean_luminance_interval"] = {s.mean_luminance - half, s.mean_luminance + half};
     if (rule.relative_error > 0)
         j.update({{"met", s.mean_luminance > 0 && reached <= rule.relative_error}, {"pilot_spp", stopped.pilot_spp}, {"pilot_seconds", stopped.pilot_seconds}});
     return j;
 }
 
 void tell_stop(const nlohmann::json &stop, double spp, double seconds) {
-    std::string words = fmt::format("stopped after {:.4g} samples a pixel and {:.4g} s of kernel time: relative standard error {:.3g} % of "
-                                    "the mean luminance, which is in [{:.6g}, {:.6g}] with confidence {:g} %",
-                                    spp, seconds, 100 * stop["relative_error"].get<double>(), stop["mean_luminance_interval"][0].get<double>(),
-                                    stop["mean_luminance_interval"][1].get<double>(), 100 * confidence);
+    std::string words = fmt::format("stopped after {:.4g} samples a pixel and {:.4g} s of kernel time: ", spp, seconds);
+    const nlohmann::json &interval = stop["mean_luminance_interval"];
+    if (interval.is_null())
+        words += "the mean luminance of the whole image is unknown";
+    else
+        words += fmt::format("relative standard error {:.3g} % of the mean luminance, which is in [{:.6g}, {:.6g}] "
+                             "with confidence {:g} %",
+                             100 * stop["relative_error"].get<double>(), interval[0].get<double>(),
+                             interval[1].get<double>(), 100 * confidence);
     if (stop.contains("pilot_spp"))
         words += fmt::format("; a pilot of {} samples a pixel ({:.3g} s) decided and is not in the image",
                              stop["pilot_spp"].get<unsigned>(), stop["pilot_seconds"].get<double>());
     info("error   " + words);
     if (!stop.value("met", true))
-        warn(fmt::format("--target-error {:g} %: reached {:.3g} %", 100 * stop["target"].get<double>(), 100 * stop["reached"].get<double>()));
+        warn(interval.is_null() ? fmt::format("--target-error {:g} %: not reached", 100 * stop["target"].get<double>())
+                                : fmt::format("--target-error {:g} %: reached {:.3g} %",
+                                              100 * stop["target"].get<double>(), 100 * stop["reached"].get<double>()));
 }
 
-void tell_result(const nlohmann::json &report, const Film &film) {
-    info(fmt::format("result  mean luminance {:.6g} +- {:.2g}, {:.4g} M paths/s over {:.3g} s of kernel time",
-                     report["mean_luminance"].get<double>(), report["stderr_luminance"].get<double>(),
-                     1e-6 * report["samples_per_second"].get<double>(), report["seconds"]["render"].get<double>()));
-    if (film.invalid == 0)
+void tell_result(const nlohmann::json &report) {
+    const nlohmann::json &error = report["stderr_luminance"];
+    const std::string of =
+        error.is_null() ? "of the pixels that have samples" : fmt::format("+- {:.2g}", error.get<double>());
+    info(fmt::format("result  mean luminance {:.6g} {}, {:.4g} M paths/s over {:.3g} s of kernel time",
+                     report["mean_luminance"].get<double>(), of, 1e-6 * report["samples_per_second"].get<double>(),
+                     report["seconds"]["render"].get<double>()));
+}
+
+// What the image lacks. Called before the report is made, which lists the warnings. seconds: the film's kernel time.
+void warn_of_gaps(const Film &film, double seconds) {
+    if (film.invalid) {
+        std::string places;
+        for (const InvalidSample &p : film.invalid_places)
+            places += fmt::format(" pixel ({}, {}) sample {};", p.x, p.y, p.sample);
+        warn(fmt::format("{} samples were NaN or infinite and are left out of the image; the first:{}", film.invalid,
+                         places));
+    }
+    const FilmStatistics s = statistics_of(film);
+    if (s.empty_pixels == 0)
         return;
-    std::string places;
-    for (const InvalidSample &p : film.invalid_places)
-        places += fmt::format(" pixel ({}, {}) sample {};", p.x, p.y, p.sample);
-    warn(fmt::format("{} samples were NaN or infinite and are left out of the image; the first:{}", film.invalid, places));
+    const size_t pixels = film.count.size();
+    std::string words = fmt::format(
+        "{} of {} pixels ({:.3g} %) have no {}sample: the image shows nothing there, and its mean is that "
+        "of the others, with unknown error",
+        s.empty_pixels, pixels, 100 * double(s.empty_pixels) / double(pixels), film.invalid ? "valid " : "");
+    if (!film.invalid)
+        words += fmt::format("; one sample of every pixel takes about {:.2g} s",
+                             seconds * double(pixels) / double(s.samples));
+    warn(words);
 }
 
 // --strategy auto: sets the strategy of the sweep's preset `course` that costs least by short pilots, and says why. Their
@@ -211,6 +241,7 @@ int run(const Options &o, const CLI::App &app) {
     seconds.render = renderer.kernel_seconds();
 
     const Film film = renderer.film();
+    warn_of_gaps(film, seconds.render);
     Image image = image_of(film, variance);
     nlohmann::json report = report_json(scene, pick.info, lanes, o.seed, film, seconds);
     if (!choice.is_null())
@@ -227,7 +258,7 @@ int run(const Options &o, const CLI::App &app) {
     report["seconds"]["write"] = seconds.write;
     if (!o.json.empty())
         write_safely(o.json, dump(report, 2) + "\n");
-    tell_result(report, film);
+    tell_result(report);
     if (rule.given())
         tell_stop(report["stop"], report["spp"].get<double>(), seconds.render);
     info(fmt::format("wrote   {}{}", exr.string(), with_png ? " and " + png.string() : ""));

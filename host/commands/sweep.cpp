@@ -63,6 +63,8 @@ Image read_reference(const std::string &file, const SceneDescription &scene) {
     for (const char *channel : {"R", "G", "B"})
         if (!image.find(channel))
             throw Error(fmt::format("--reference {}: has no layer {}, which a render has", file, channel));
+    if (const double empty = image.number("opal.empty_pixels"))
+        throw Error(fmt::format("--reference {}: {} of its pixels have no sample", file, empty));
     const auto of = image.metadata.find("opal.scene");
     if (of != image.metadata.end() && std::filesystem::path(of->second).filename() != scene.file.filename())
         throw Error(fmt::format("--reference {}: is an image of {}, not of {}", file, of->second, scene.file.string()));

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace opal {
 
@@ -20,6 +21,11 @@ const Layer &Image::get(const std::string &name) const {
     for (const Layer &layer : layers)
         names.push_back(layer.name);
     throw Error(fmt::format("the image has no layer '{}'; available: {}", name, fmt::join(names, ", ")));
+}
+
+double Image::number(const std::string &attribute) const {
+    const auto found = metadata.find(attribute);
+    return found == metadata.end() ? 0 : std::strtod(found->second.c_str(), nullptr);
 }
 
 } // namespace opal

@@ -20,6 +20,7 @@ struct Image {
 
     const Layer *find(const std::string &name) const; // nullptr where there is none
     const Layer &get(const std::string &name) const;  // Error naming the layers there are
+    double number(const std::string &attribute) const; // of the metadata; 0 where it is missing or no number
 };
 
 Image read_exr(const std::filesystem::path &file);                    // every float or half channel

@@ -17,21 +17,25 @@ double luminance_of(const std::array<double, 3> &c) { return 0.212671 * c[0] + 0
 
 FilmStatistics statistics_of(const Film &film) {
     FilmStatistics s;
-    double filled = 0, variance = 0, between = 0, between_squares = 0;
-    bool one_sample = true;
+    double filled = 0, variance = 0;
+    double between = 0, between_squares = 0; // of pixels with one sample
     for (size_t p = 0; p < film.sum.size(); p++) {
         const double n = film.count[p];
-        if (n == 0)
+        if (n == 0) {
+            s.empty_pixels++;
             continue;
+        }
         s.samples += film.count[p];
         filled++;
         for (int c = 0; c < 3; c++)
             s.mean_rgb[c] += film.sum[p][c] / n;
         const double luminance = luminance_of(film.sum[p]);
         variance += variance_of_mean(luminance, film.squares[p][3], n);
-        one_sample = one_sample && n == 1;
-        between += luminance / n;
-        between_squares += luminance / n * (luminance / n);
+        if (n == 1) {
+            s.single_sample_pixels++;
+            between += luminance;
+            between_squares += luminance * luminance;
+        }
     }
     s.invalid = film.invalid;
     if (filled == 0)
@@ -39,8 +43,9 @@ FilmStatistics statistics_of(const Film &film) {
     for (double &c : s.mean_rgb)
         c /= filled;
     s.mean_luminance = luminance_of(s.mean_rgb);
-    s.stderr_luminance =
-        one_sample ? std::sqrt(variance_of_mean(between, between_squares, filled)) : std::sqrt(variance) / filled;
+    const double singles = double(s.single_sample_pixels);
+    variance += singles * singles * variance_of_mean(between, between_squares, singles);
+    s.stderr_luminance = std::sqrt(variance) / filled;
     return s;
 }
 

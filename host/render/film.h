@@ -21,13 +21,15 @@ struct Film {
     std::vector<InvalidSample> invalid_places;     // of the first few
 };
 
-// A mean over the image with its standard error, from the variances of the pixels (each pixel is a stratum: the error is
-// of the image's noise, not of its content). With one sample a pixel there is no variance within pixels: the variance
-// between them is taken, an upper bound. Stratified and Sobol samples: an upper bound too.
+// A mean over the image with its standard error, from the variances of the pixels (each pixel is a stratum: the error
+// is of the image's noise, not of its content). A pixel with one sample has no variance within: that between all such
+// pixels is taken for it, an upper bound. Stratified and Sobol samples: an upper bound too.
 struct FilmStatistics {
     std::array<double, 3> mean_rgb{};
     double mean_luminance = 0, stderr_luminance = 0;
     unsigned long long samples = 0, invalid = 0;
+    unsigned long long empty_pixels = 0; // without a valid sample: mean and error are of the others, not of the image
+    unsigned long long single_sample_pixels = 0;
 };
 FilmStatistics statistics_of(const Film &film);
 

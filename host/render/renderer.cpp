@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <numbers>
+#include <numeric>
 
 namespace opal {
 
@@ -14,6 +17,16 @@ constexpr unsigned long long slot_bytes = 12, slots_budget = 256ull << 20;
 constexpr unsigned most_chunks = 4096;
 
 unsigned ceil_div(unsigned a, unsigned b) { return (a + b - 1) / b; }
+
+// 0 .. count - 1 by the fractional parts of their multiples of the golden ratio. Launches are strips of the image from
+// its top on; taken in this order, those that are done lie evenly over it, whenever a pass is stopped.
+std::vector<unsigned> spread_order(unsigned count) {
+    const auto place = [](unsigned i) { return std::fmod(i * std::numbers::phi, 1.0); };
+    std::vector<unsigned> order(count);
+    std::iota(order.begin(), order.end(), 0u);
+    std::ranges::sort(order, {}, place);
+    return order;
+}
 
 } // namespace
 
@@ -127,19 +140,21 @@ bool Renderer::render_pass(unsigned samples, const Continue &go_on) {
     const unsigned chunk_samples = ceil_div(samples, shape_.chunks), items = shape_.tiles * shape_.chunks;
     const cl_uint first_place = cl_uint(scene_.size()) + 1;
     set_pass_arguments(render_kernel_, first_place + 1, chunk_samples, samples);
+    set_pass_arguments(clear_kernel_, 3, chunk_samples, samples);
     double seconds = 0;
     bool stopped = false;
-    unsigned first = 0;
-    for (; first < items && !stopped; first += shape_.items_a_launch) {
+    unsigned done = 0;
+    for (const unsigned place : spread_order(ceil_div(items, shape_.items_a_launch))) {
+        const unsigned first = place * shape_.items_a_launch;
+        if (stopped) { // the slots that nothing is rendered into
+            clear_kernel_.setArg(2, cl_uint(first));
+            launch(clear_kernel_, shape_.items_a_launch);
+            continue;
+        }
         render_kernel_.setArg(first_place, cl_uint(first));
         seconds += launch(render_kernel_, shape_.items_a_launch);
-        const double share = std::min(1.0, double(first + shape_.items_a_launch) / items);
-        stopped = go_on && !go_on(next_ + samples * share, kernel_seconds_);
-    }
-    if (first < items) { // the slots that nothing was rendered into
-        set_pass_arguments(clear_kernel_, 3, chunk_samples, samples);
-        clear_kernel_.setArg(2, cl_uint(first));
-        launch(clear_kernel_, items - first);
+        done += std::min(shape_.items_a_launch, items - first);
+        stopped = go_on && !go_on(next_ + samples * double(done) / items, kernel_seconds_);
     }
     gather_kernel_.setArg(5, cl_uint(next_));
     gather_kernel_.setArg(6, cl_uint(samples));

@@ -25,8 +25,9 @@ public:
     // Asked after each launch with the samples a pixel (a fraction within a pass) and the kernel seconds so far; false stops.
     using Continue = std::function<bool(double samples_done, double kernel_seconds)>;
 
-    // Adds samples [next_sample(), end) of each pixel to the film; true when all were added. When stopped, what the last
-    // pass had finished is added too, so that pixels then differ in their counts.
+    // Adds samples [next_sample(), end) of each pixel to the film; true when all were added. When stopped, what the
+    // last pass had finished is added too: pixels then differ in their counts, in the first pass some have no sample.
+    // Those that have more lie evenly over the image.
     bool render(unsigned end, const Continue &go_on = {});
 
     // Empties the film; the next sample is `first_sample` of `seed`.

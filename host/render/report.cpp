@@ -36,7 +36,9 @@ json report_json(const SceneDescription &scene, const DeviceInfo &device, int la
     j["seed"] = seed;
     j["mean_rgb"] = s.mean_rgb;
     j["mean_luminance"] = s.mean_luminance;
-    j["stderr_luminance"] = s.stderr_luminance;
+    j["stderr_luminance"] = s.empty_pixels ? json() : json(s.stderr_luminance); // null: unknown
+    j["empty_pixels"] = s.empty_pixels;
+    j["single_sample_pixels"] = s.single_sample_pixels;
     j["invalid_samples"] = s.invalid;
     j["invalid_places"] = json::array();
     for (const InvalidSample &p : film.invalid_places)

@@ -89,6 +89,10 @@ TEST_CASE("An image without variance is compared, and the missing test is told",
     place.put("single.exr", noisy(1, 3, 1));
     CHECK(place.json("b.exr plain.exr")["untested"].get<std::string>().find("plain.exr holds no layer variance.R") == 0);
     CHECK(place.json("single.exr b.exr")["untested"] == "single.exr has one sample a pixel and so no variance");
+    Image uneven = noisy(1, 4); // as of a render that was stopped
+    uneven.metadata["opal.single_sample_pixels"] = "7";
+    place.put("uneven.exr", uneven);
+    CHECK(place.json("b.exr uneven.exr")["untested"] == "uneven.exr has 7 pixels with one sample and so no variance");
     CHECK_FALSE(place.json("plain.exr b.exr").contains("test"));
     CHECK(place.json("plain.exr plain.exr")["psnr_db"].is_null()); // equal: infinite
 }

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <random>
 
 using namespace opal;
 using namespace opal::test;
@@ -25,6 +26,35 @@ Mutant spoiled(const std::string &what) {
 
 TEST_CASE("Sums of many samples lose nothing, and leave out what is not finite", "[film]") {
     require_all_pass(check_film(Sources::embedded(), test_seed(40)));
+}
+
+// Samples of noise around a radiance of 1, grey, as many a pixel as `count` says.
+TEST_CASE("The error of a film whose pixels differ in their counts is that of its noise", "[film]") {
+    constexpr int pixels = 1000, films = 200;
+    const auto count = [](int p) { return p % 5 == 0 ? 10u : 1u; }; // a second pass that was stopped after a fifth
+    std::mt19937 random(test_seed(41));
+    std::normal_distribution<double> noise(0, 0.5);
+    stats::Moments means, errors;
+    for (int i = 0; i < films; i++) {
+        Film film{pixels, 1, {}, {}, {}, {}, 0, {}};
+        for (int p = 0; p < pixels; p++) {
+            double sum = 0, squares = 0;
+            for (unsigned s = 0; s < count(p); s++) {
+                const double x = 1 + noise(random);
+                sum += x;
+                squares += x * x;
+            }
+            film.sum.push_back({sum, sum, sum});
+            film.squares.push_back({squares, squares, squares, squares});
+            film.count.push_back(count(p));
+        }
+        const FilmStatistics s = statistics_of(film);
+        CHECK(s.empty_pixels == 0);
+        CHECK(s.single_sample_pixels == pixels / 5 * 4);
+        means.add(s.mean_luminance);
+        errors.add(s.stderr_luminance);
+    }
+    CHECK(errors.mean() == Approx(std::sqrt(means.sample().variance)).epsilon(0.2)); // of 200 films: 5 %
 }
 
 TEST_CASE("Invalid samples are counted, placed and left out of the mean", "[film]") {
@@ -46,6 +76,7 @@ TEST_CASE("Invalid samples are counted, placed and left out of the mean", "[film
         for (const InvalidSample &place : film.invalid_places)
             CHECK((place.y * unsigned(film.width) + place.x) % 11 == 5);
         CHECK(statistics_of(film).invalid == film.invalid);
+        CHECK(statistics_of(film).empty_pixels == spoiled_pixels);
         CHECK(statistics_of(film).mean_luminance == Approx(1.75).epsilon(1e-6));
         const Image image = image_of(film, true);
         for (const Layer &layer : image.layers)
@@ -85,5 +116,9 @@ TEST_CASE("The binary tells of invalid samples, in words and in the JSON", "[fil
     const nlohmann::json report = nlohmann::json::parse(read_text(json));
     CHECK(report["invalid_samples"] == 6);
     CHECK(report["invalid_places"].size() == 6);
+    CHECK(report["empty_pixels"] == 6);
+    CHECK(report["stderr_luminance"].is_null());
+    CHECK(report["warnings"].size() == 2);
+    CHECK_THAT(outcome.err, Catch::Contains("6 of 64 pixels (9.38 %) have no valid sample"));
     CHECK(std::isfinite(report["mean_luminance"].get<double>()));
 }

@@ -4,10 +4,81 @@
 #include "support/device.h"
 #include "support/scratch.h"
 
+#include <nlohmann/json.hpp>
+
+#include <chrono>
 #include <cmath>
+#include <csignal>
+#include <fstream>
+#include <thread>
+#include <unistd.h>
 
 using namespace opal;
 using namespace opal::test;
+
+namespace {
+
+// CPU seconds of a process, of all its threads.
+double cpu_seconds(const std::string &process) {
+    std::ifstream stat("/proc/" + process + "/stat");
+    std::string word;
+    double ticks = 0;
+    for (int field = 1; field <= 15 && stat >> word; field++) // proc(5): 14 utime, 15 stime; "(opal)" is one word
+        ticks += field >= 14 ? std::stod(word) : 0;
+    return ticks / double(sysconf(_SC_CLK_TCK));
+}
+
+// Runs a render and sends it SIGINT when it has taken that many CPU seconds.
+Outcome interrupted_after(double seconds, const ScratchFolder &folder, const std::string &arguments) {
+    const std::string started = folder / "started";
+    Outcome outcome;
+    std::thread render([&] { // the shell tells its process id, then becomes opal
+        outcome = run_shell("sh -c 'echo $$ >" + started + ".new && mv " + started + ".new " + started +
+                            " && exec " OPAL_BINARY " render " + arguments + "'");
+    });
+    while (!std::filesystem::exists(started))
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    const std::string process = std::to_string(std::stoi(read_text(started)));
+    while (cpu_seconds(process) < seconds && std::filesystem::exists("/proc/" + process))
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    kill(std::stoi(process), SIGINT);
+    render.join();
+    return outcome;
+}
+
+} // namespace
+
+TEST_CASE("An interrupted first pass tells of the pixels without a sample, and claims nothing of them", "[interrupt]") {
+    if (device().info.type == "gpu") {
+        WARN("not tested: one launch holds the whole image here");
+        return;
+    }
+    // 32 launches of long paths, some 20 CPU seconds. Compiled before, so that what takes CPU time is rendering.
+    const std::string render = OPAL_SOURCE_DIR "/scenes/furnace.xml --rr off --max-depth 100 --no-png";
+    REQUIRE(run_shell(OPAL_BINARY " " + render + " --width 8 --spp 1 -o /dev/null").exit_code == 0);
+    for (const std::string rule : {"", " --target-error 10%", " --time 1h"}) {
+        INFO(rule);
+        const ScratchFolder folder;
+        const std::string exr = folder / "out.exr", json = folder / "out.json";
+        const Outcome outcome = interrupted_after(
+            2, folder, render + " --width 1024 --height 1024 --spp 1000 -o " + exr + " --json " + json + rule);
+        INFO(outcome.err);
+        REQUIRE(outcome.exit_code == exit_interrupted);
+        CHECK_THAT(outcome.err, Catch::Contains(" of 1048576 pixels (") && Catch::Contains(" have no sample"));
+        CHECK_THAT(outcome.err, !Catch::Contains("+-") && !Catch::Contains("confidence"));
+        const nlohmann::json report = nlohmann::json::parse(read_text(json));
+        CHECK(report["empty_pixels"] > 0);
+        CHECK(report["stderr_luminance"].is_null());
+        CHECK(report["mean_luminance"].get<double>() == Approx(0.5).epsilon(0.05));
+        CHECK(read_exr(exr).metadata.at("opal.empty_pixels") == report["empty_pixels"].dump());
+        if (!rule.empty()) {
+            CHECK(report["stop"]["mean_luminance_interval"].is_null());
+            CHECK(report["stop"]["relative_error"].is_null());
+        }
+        if (report.contains("stop") && report["stop"]["rule"] == "target-error")
+            CHECK(report["stop"]["met"] == false);
+    }
+}
 
 TEST_CASE("An interrupted render leaves an image of the samples it finished", "[interrupt]") {
     const ScratchFolder folder;

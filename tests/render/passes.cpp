@@ -65,6 +65,28 @@ TEST_CASE("Samples rendered in two goes are those of one", "[passes]") {
     CHECK(same_bits(renderer.film(), render(scene, 11, 3)));
 }
 
+TEST_CASE("A first pass that is stopped has its samples all over the image", "[passes]") {
+    SceneDescription large = with(gallery(1200, 1200), {{"integrator", "normals"}});
+    Renderer renderer = renderer_of(large);
+    renderer.restart(1);
+    if (renderer.render(1, [](double samples, double) { return samples < 0.25; })) {
+        WARN("not tested: one launch holds the whole image here");
+        return;
+    }
+    const Film film = renderer.film();
+    const size_t pixels = film.count.size();
+    const FilmStatistics statistics = statistics_of(film);
+    CHECK(statistics.samples + statistics.empty_pixels == pixels);
+    CHECK(double(statistics.empty_pixels) / double(pixels) == Approx(0.75).margin(0.03));
+    size_t sampled[4][4] = {};
+    for (size_t p = 0; p < pixels; p++)
+        sampled[p / 1200 / 300][p % 1200 / 300] += film.count[p];
+    for (const auto &row : sampled)
+        for (const size_t n : row)
+            CHECK(double(n) / (300 * 300) == Approx(0.25).margin(0.15));
+    CHECK(statistics.mean_luminance == Approx(statistics_of(render(large, 1, 1)).mean_luminance).epsilon(0.05));
+}
+
 // Large enough for several launches a pass, so that a pass can stop in its middle.
 TEST_CASE("A render that is stopped midway holds the first samples of each pixel, and counts them", "[passes]") {
     SceneDescription large = with(furnace(0.5, 1), {{"integrator", "normals"}});

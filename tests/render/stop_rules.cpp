@@ -2,11 +2,16 @@
 #include "render/stop_rules.h"
 
 #include "base/units.h"
+#include "image/image.h"
 #include "stats/hypothesis.h"
 #include "support/device.h"
 #include "support/error_of.h"
 #include "support/plain_scenes.h"
+#include "support/scratch.h"
 #include "support/seeds.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 using namespace opal;
 using namespace opal::test;
@@ -78,6 +83,42 @@ TEST_CASE("--time ends after that much kernel time, and stops no render that end
     CHECK(s.samples < 64ull << 30);
     CHECK(r.renderer.kernel_seconds() >= 0.3);
     CHECK(r.renderer.kernel_seconds() < 3); // a launch is about 0.1 s
+}
+
+// Of many launches a pass, of which --time lets one end.
+TEST_CASE("--time too short for a sample a pixel says so, and states no interval", "[stop_rules]") {
+    const ScratchFolder folder;
+    const std::string scene = OPAL_SOURCE_DIR "/scenes/furnace.xml", exr = folder / "part.exr",
+                      json = folder / "part.json";
+    const Outcome outcome =
+        run_shell(OPAL_BINARY " " + scene + " --width 1024 --height 1024 --time 1ms --layers variance -o " + exr +
+                  " --json " + json);
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    const nlohmann::json report = nlohmann::json::parse(read_text(json));
+    const size_t empty = report["empty_pixels"];
+    if (empty == 0) {
+        WARN("not tested: one launch holds the whole image here");
+        return;
+    }
+    CHECK(double(empty) == Approx((1 - report["spp"].get<double>()) * 1024 * 1024));
+    CHECK_THAT(outcome.err, Catch::Contains(fmt::format("warning: {} of 1048576 pixels", empty)) &&
+                                Catch::Contains("one sample of every pixel takes about"));
+    CHECK_THAT(outcome.err, !Catch::Contains("+-") && !Catch::Contains("confidence"));
+    CHECK(report["stderr_luminance"].is_null());
+    CHECK(report["stop"]["mean_luminance_interval"].is_null());
+    CHECK(report["stop"]["relative_error"].is_null());
+    CHECK_THAT(report["warnings"][0].get<std::string>(), Catch::Contains("have no sample"));
+
+    // Nor is it taken for a whole image later.
+    CHECK(read_exr(exr).number("opal.empty_pixels") == double(empty));
+    const Outcome compared = run_shell(OPAL_BINARY " compare " + exr + " " + exr);
+    CHECK_THAT(compared.err, Catch::Contains(fmt::format("part.exr: {} pixels without a sample", empty)));
+    CHECK_THAT(compared.out, Catch::Contains("No test of the means: " + exr + " has "));
+    const Outcome swept = run_shell(OPAL_BINARY " sweep " + scene + " --width 1024 --reference " + exr + " -o " +
+                                    (folder / "sweep").string());
+    CHECK(swept.exit_code == 1);
+    CHECK_THAT(swept.err, Catch::Contains(fmt::format("{} of its pixels have no sample", empty)));
 }
 
 TEST_CASE("Durations and errors are read with their units", "[stop_rules]") {
