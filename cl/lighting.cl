@@ -10,9 +10,9 @@ typedef struct {
 } Path;
 
 // The pair `dimension` of the path's present segment.
-static v2 path_draw(const Scene *scene, const Path *path, uint dimension) {
-    return draw(scene, path->sampler, 1u + (path->depth - 1u) * (uint)DIMS_A_SEGMENT + dimension);
-}
+static uints path_dimension(const Path *path, uint dimension) { return 1u + (path->depth - 1u) * (uint)DIMS_A_SEGMENT + dimension; }
+static v2 path_draw(const Scene *scene, const Path *path, uint dimension) { return draw(scene, path->sampler, path_dimension(path, dimension)); }
+static u2 path_draw_bits(const Scene *scene, const Path *path, uint dimension) { return draw_bits(scene, path->sampler, path_dimension(path, dimension)); }
 
 // Weight of a sample whose own density is 1 against another of density `ratio` (Veach 1997, eq. 9.8 and 9.10). As a ratio it
 // survives densities that are 0 or overflow.
@@ -32,7 +32,7 @@ static v3 emitted(const Scene *scene, const Path *path, Surface s, mask found) {
     if (CHOSEN(scene, lighting, mis)) {
         // Both densities over solid angle; the light's is turned by distance^2 / cosine.
         real cosine = fabs(v3_dot(s.normal, path->ray.d));
-        real ratio = emitter_area_pdf(scene, id, s.area) * square(s.t) / (cosine * path->pdf);
+        real ratio = emitter_area_pdf(scene, id, s.triangle) * square(s.t) / (cosine * path->pdf);
         radiance = v3_scale(radiance, path->direct ? (real)(1) : mis_weight(scene, ratio));
     }
     return v3_pick(shining, radiance, none);
@@ -54,8 +54,8 @@ static LightSample sample_light(const Scene *scene, const Path *path, Surface s,
     sample.shadow.tmax = 1; // the light's surface
     sample.live = NO_LANES;
     if (EMITTER_KINDS == 0 || !ANY(live)) return sample;
-    uints id = emitter_choose(scene, path_draw(scene, path, DIM_EMITTER));
-    EmitterSample light = emitter_sample(scene, id, path_draw(scene, path, DIM_LIGHT), path_draw(scene, path, DIM_TRIANGLE), live);
+    uints id = emitter_choose(scene, path_draw_bits(scene, path, DIM_EMITTER));
+    EmitterSample light = emitter_sample(scene, id, path_draw(scene, path, DIM_LIGHT), path_draw_bits(scene, path, DIM_TRIANGLE), live);
 
     v3 to_light = v3_sub(light.p, s.p);
     real inverse_distance = rsqrt(v3_dot(to_light, to_light));
@@ -66,7 +66,7 @@ static LightSample sample_light(const Scene *scene, const Path *path, Surface s,
 
     // cos / distance^2 turns a density over area into one over solid angle.
     real cosine = light.discrete ? (real)(1) : fabs(v3_dot(light.normal, to_light)) * inverse_distance;
-    real per_density = cosine * square(inverse_distance) * light.area / emitter_probability(scene, id);
+    real per_density = cosine * square(inverse_distance) / (light.pdf * emitter_probability(scene, id));
     real bsdf_density;
     v3 f = bsdf_eval(scene, s.bsdf, s.wi, wo, live, &bsdf_density);
     if (CHOSEN(scene, lighting, mis)) {
@@ -133,6 +133,7 @@ static mask roulette(const Scene *scene, Path *path, mask live, real u) {
         survival = real_min(survival, (real)(ROULETTE_MOST));
     }
     mask plays = live & to_mask(path->depth > scene->settings->rr_depth);
-    path->throughput = v3_scale(path->throughput, plays ? 1 / survival : (real)(1));
-    return live & (!plays | (u < survival));
+    Choice survives = choose(survival, u);
+    path->throughput = v3_scale(path->throughput, plays ? 1 / survives.probability : (real)(1));
+    return live & (!plays | survives.first);
 }

@@ -16,6 +16,7 @@ typedef struct {
     uints key0, key1;      // their hash with the seed
 } Sampler;
 
+typedef struct { uints x, y; } u2;
 typedef struct { uints x, y, z; } u3;
 
 // pcg3d and pcg4d of Jarzynski and Olano 2020, "Hash Functions for GPU Rendering".
@@ -42,8 +43,32 @@ static Sampler sampler_start(uints pixel, uints sample, uint seed) {
     return s;
 }
 
+#define GRID R(16777216.0)                      // 2^24 numbers ...
+#define GRID_STEP R(5.9604644775390625e-08)     // ... 2^-24 apart
+
 // The upper 24 bits as a number in [0, 1).
-static real unit_real(uints bits) { return to_real(bits >> 8) * R(5.9604644775390625e-08); }
+static real unit_real(uints bits) { return to_real(bits >> 8) * GRID_STEP; }
+
+// The probability with which a choice of probability p, 0 to 1, is drawn. A random number u is k 2^-24, so that u < p comes true with
+// probability ceil(p 2^24) 2^-24, and a weight that divides by p would be wrong for ever: by 1 % where p is 1e-6. What is not certain
+// keeps a chance not to happen.
+static real drawn_probability(real p) {
+    return real_min(ceil(p * GRID), p < 1 ? (real)(GRID - 1) : (real)(GRID)) * GRID_STEP;
+}
+
+// A choice between two things by the number u. Weights divide by the probability that it tells, never by the one that was wished for.
+typedef struct {
+    mask first;        // u < drawn_probability(p)
+    real probability;  // of what was chosen
+} Choice;
+
+static Choice choose(real p, real u) {
+    real drawn = drawn_probability(p);
+    Choice c;
+    c.first = u < drawn;
+    c.probability = c.first ? drawn : 1 - drawn;
+    return c;
+}
 
 static uints reverse_bits(uints x) {
     x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
@@ -77,14 +102,16 @@ static uints sobol_second(uints i) {
 }
 
 // A pair of Owen-scrambled Sobol points, padded: each dimension shuffles the order of its points (Burley 2020).
-static v2 sobol_pair(Sampler s, uints dimension, uint seed) {
+static u2 sobol_pair(Sampler s, uints dimension, uint seed) {
     u3 h = pcg3d(s.pixel, dimension, (uints)(seed));
     uints i = owen_scramble(s.sample, h.x);
-    return v2_of(unit_real(owen_scramble(reverse_bits(i), h.y)), unit_real(owen_scramble(sobol_second(i), h.z)));
+    u2 pair = {owen_scramble(reverse_bits(i), h.y), owen_scramble(sobol_second(i), h.z)};
+    return pair;
 }
 
-// Place of i in a random permutation of 0 ... n-1 (Kensler 2013, "Correlated Multi-Jittered Sampling", listing 3).
-static uints permute(uints i, uint n, uints p) {
+// Place of i in a random permutation of 0 ... n-1 (Kensler 2013, "Correlated Multi-Jittered Sampling", listing 3), by p, then turned by
+// a number of its own: p alone would favour some places by up to 0.3 % where n is small.
+static uints permute(uints i, uint n, uints p, uints turn) {
     uint w = n - 1;
     w |= w >> 1; w |= w >> 2; w |= w >> 4; w |= w >> 8; w |= w >> 16;
     uints r = i;
@@ -97,20 +124,21 @@ static uints permute(uints i, uint n, uints p) {
         r = uints_pick(out, x, r);
         out = out & to_mask(r >= n);
     }
-    return (r + p % n) % n;
+    return (r + turn % n) % n;
 }
 
 // One jittered stratum of a grid of at least `spp` cells a sample, in an order of its own for each dimension.
-static v2 stratified_pair(Sampler s, uints dimension, uint spp, uint seed) {
+static u2 stratified_pair(Sampler s, uints dimension, uint spp, uint seed) {
     spp = min(spp, 1u << 30); // or the number of cells overflows
     uint columns = max(1u, (uint)sqrt((float)spp)), rows = (spp + columns - 1) / columns, cells = columns * rows;
     uints round = s.sample / cells; // past spp the strata start over
     u3 h = pcg3d(s.pixel, dimension, (uints)(seed) ^ (round * 0x85ebca6bu));
     u3 jitter = pcg3d(s.key0, s.key1, dimension);
-    uints cell = permute(s.sample - round * cells, cells, h.x);
+    uints cell = permute(s.sample - round * cells, cells, h.x, h.y);
     uints row = cell / columns, column = cell - row * columns;
     // (cell + u) / n rounds up to 1 for the last cell: kept below.
-    real below_one = R(0.999999940395355224609375);
-    return v2_of(real_min((to_real(column) + unit_real(jitter.x)) / (real1)columns, (real)(below_one)),
-                 real_min((to_real(row) + unit_real(jitter.y)) / (real1)rows, (real)(below_one)));
+    uints x = to_uints(real_min((to_real(column) + unit_real(jitter.x)) / (real1)columns * GRID, (real)(GRID - 1)));
+    uints y = to_uints(real_min((to_real(row) + unit_real(jitter.y)) / (real1)rows * GRID, (real)(GRID - 1)));
+    u2 pair = {x << 8 | (jitter.x & 255u), y << 8 | (jitter.y & 255u)};
+    return pair;
 }

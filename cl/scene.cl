@@ -55,18 +55,26 @@ static Ray same_ray(Ray ray, mask always) {
     return ray;
 }
 
-static v2 draw_once(const Scene *scene, Sampler s, uints dimension) {
+static u2 bits_once(const Scene *scene, Sampler s, uints dimension) {
     if (CHOSEN(scene, sampler, sobol)) return sobol_pair(s, dimension, scene->settings->seed);
     if (CHOSEN(scene, sampler, stratified)) return stratified_pair(s, dimension, scene->settings->spp, scene->settings->seed);
     u3 h = pcg3d(s.key0, s.key1, dimension);
-    return v2_of(unit_real(h.x), unit_real(h.y));
+    u2 pair = {h.x, h.y};
+    return pair;
 }
 
-// A pair of numbers of a dimension, by the chosen sampler.
+// A pair of random words of a dimension, by the chosen sampler: 32 bits each, for choices among many.
+static u2 draw_bits(const Scene *scene, Sampler s, uints dimension) {
+    u2 bits = bits_once(scene, s, dimension);
+    if (!OPAL_TWICE_sampling) return bits;
+    mask always = unit_real(bits.x) < 2;
+    s.key0 = uints_pick(always, s.key0, s.key1);
+    s.sample = uints_pick(always, s.sample, s.pixel);
+    return bits_once(scene, s, dimension);
+}
+
+// The same pair as numbers in [0, 1).
 static v2 draw(const Scene *scene, Sampler s, uints dimension) {
-    v2 u = draw_once(scene, s, dimension);
-    if (!OPAL_TWICE_sampling) return u;
-    s.key0 = uints_pick(u.x < 2, s.key0, s.key1);
-    s.sample = uints_pick(u.x < 2, s.sample, s.pixel);
-    return draw_once(scene, s, dimension);
+    u2 bits = draw_bits(scene, s, dimension);
+    return v2_of(unit_real(bits.x), unit_real(bits.y));
 }

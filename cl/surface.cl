@@ -5,7 +5,7 @@ typedef struct {
     v3 normal;           // geometric, unit, on the side of (p1-p0) x (p2-p0)
     Frame frame;         // around the shading normal
     v3 wi;               // towards where the ray came from, local
-    real area;           // of the triangle
+    uints triangle;      // its index
     real margin;         // bound of the error of p along the normal, with that of the next intersection
     uints bsdf, emitter; // indices; emitter = OPAL_NONE where it does not emit
 } Surface;
@@ -77,7 +77,7 @@ static Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask found) {
 
     Surface s;
     s.normal = v3_scale(n, inverse_length);
-    s.area = R(0.5) * length2 * inverse_length;
+    s.triangle = triangle;
     s.margin = surface_margin(p0, p1, p2);
     s.t = hit.t;
     s.u = hit.u;

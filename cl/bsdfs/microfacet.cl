@@ -6,11 +6,12 @@
 //   kd       diffuse reflectance (0.5); the coat gets ks = 1 - max(kd)
 // f = kd/pi + ks D(h) F(wi.h) G / (4 cos_i cos_o cos_h), with D the density of h over solid angle (hence the last cosine),
 // G Smith's rational approximation for Beckmann (Walter et al. 2007, section 5.2).
-typedef struct { real alpha, int_ior, ext_ior, ks; v3 kd; } microfacet_bsdf;
+typedef struct { real alpha, int_ior, ext_ior, ks, coat_chance; v3 kd; } microfacet_bsdf;
 
 static microfacet_bsdf microfacet_at(const Scene *scene, uints id) {
+    real ks = GATHER(real, scene->bsdfs, id, .u.microfacet.ks);
     microfacet_bsdf b = {GATHER(real, scene->bsdfs, id, .u.microfacet.alpha), GATHER(real, scene->bsdfs, id, .u.microfacet.int_ior),
-                         GATHER(real, scene->bsdfs, id, .u.microfacet.ext_ior), GATHER(real, scene->bsdfs, id, .u.microfacet.ks),
+                         GATHER(real, scene->bsdfs, id, .u.microfacet.ext_ior), ks, drawn_probability(ks),
                          GATHER_V3(scene->bsdfs, id, .u.microfacet.kd)};
     return b;
 }
@@ -40,24 +41,24 @@ static v3 microfacet_eval(microfacet_bsdf b, v3 wi, v3 wo) {
     return v3_pick(above, f, v3_all((real)(0)));
 }
 
-// ks D / (4 h.wo) + (1 - ks) cos_o / pi; before the loss of what is drawn below the surface.
+// c D / (4 h.wo) + (1 - c) cos_o / pi, c the probability of the coat: ks, as nearly as it can be drawn; before the loss of what is drawn below the surface.
 static real microfacet_pdf(microfacet_bsdf b, v3 wi, v3 wo) {
     v3 h = v3_normalize(v3_add(wi, wo));
     real coat = square_to_beckmann_pdf(h, b.alpha) / (4 * fabs(v3_dot(h, wo)));
-    real density = b.ks * coat + (1 - b.ks) * square_to_cosine_hemisphere_pdf(wo);
+    real density = b.coat_chance * coat + (1 - b.coat_chance) * square_to_cosine_hemisphere_pdf(wo);
     return (wi.z > 0 & wo.z > 0) ? density : (real)(0);
 }
 
 // The weight keeps the h that was drawn: one recomputed from wo is off by an ulp of wo, which a small alpha magnifies.
 static BsdfSample microfacet_sample(microfacet_bsdf b, v3 wi, v2 u, real lobe) {
-    mask coated = lobe < b.ks;
+    mask coated = lobe < b.coat_chance;
     v3 facet = square_to_beckmann(u, b.alpha);
     v3 mirrored = v3_sub(v3_scale(facet, 2 * v3_dot(wi, facet)), wi);
     v3 wo = v3_pick(coated, mirrored, square_to_cosine_hemisphere(u));
     v3 h = v3_pick(coated, facet, v3_normalize(v3_add(wi, wo)));
     real d = square_to_beckmann_pdf(h, b.alpha);
     real base = wo.z * INV_PI;
-    real density = b.ks * d / (4 * fabs(v3_dot(h, wo))) + (1 - b.ks) * base;
+    real density = b.coat_chance * d / (4 * fabs(v3_dot(h, wo))) + (1 - b.coat_chance) * base;
     v3 f_cos = v3_add(v3_scale(b.kd, base), v3_all(microfacet_coat(b, wi, wo, h, 4 * wi.z * h.z) * d));
     mask kept = wi.z > 0 & wo.z > 0 & density > 0;
     return bsdf_sample_of(wo, v3_pick(kept, v3_scale(f_cos, 1 / density), v3_all((real)(0))), kept ? density : (real)(0), (real)(1), NO_LANES);

@@ -16,6 +16,8 @@ enum { OPAL_EMITTERS(OPAL_EMITTER_ENUM) EMITTER_COUNT };
 namespace opal {
 #endif
 
+#define OPAL_ALIAS_ROWS 0x100000u // an alias table of more rows is drawn from by 32 bits, others by 24
+
 // One emitter. Positions and areas are in the flattened scene's units (FlatScene::center, FlatScene::scale).
 typedef struct {
     uint kind;            // EMITTER_*
@@ -25,11 +27,11 @@ typedef struct {
     float inverse_area;   // 1 / area
     float u[3], v[3];     // parallelogram: its edges
     float normal[3];      // parallelogram: u x v, unit; it emits on that side
-    uint first, count;    // mesh: its rows of the light triangle table
-    float probability;    // of being chosen (--emitter-choice)
+    uint first, count;    // mesh: its rows of the light triangle table, in the order of its triangles,
+    uint first_triangle;  // which are these and the next ones of the Triangle array
+    float probability;    // with which it is drawn (--emitter-choice), as alias table and random numbers have it
     float accept;         // alias table: keep this row if a uniform number is below, else take row `other`
     uint other;
-    uint pad;
 } EmitterRecord;
 OPAL_SIZE_CHECK(EmitterRecord, 96);
 
@@ -38,7 +40,7 @@ typedef struct {
     uint slot;            // where its vertices are: TriangleBlock slot / 8, place slot % 8
     float accept;
     uint other;
-    float probability;    // of being chosen within its mesh (--triangle-choice)
+    float pdf;            // density over area of points drawn on it, given the light: its probability (--triangle-choice) over its area
 } LightTriangle;
 OPAL_SIZE_CHECK(LightTriangle, 16);
 

@@ -1,11 +1,9 @@
 // mesh: a triangle mesh that emits on the side of its shading normals. A triangle is chosen by area or uniformly
 // (--triangle-choice), then a point on it uniformly; the density is the joint one.
 //   <mesh type="obj"> ... <emitter type="area"> <color name="radiance" value="40 40 40"/> </emitter> </mesh>
-static EmitterSample emitter_mesh_sample(const Scene *scene, uints id, v2 point, v2 triangle) {
-    uints first = GATHER(uints, scene->emitters, id, .first), count = GATHER(uints, scene->emitters, id, .count);
-    uints row = first + alias_row(triangle.x, count);
-    mask kept = triangle.y < GATHER(real, scene->light_triangles, row, .accept);
-    row = uints_pick(kept, row, first + GATHER(uints, scene->light_triangles, row, .other));
+static EmitterSample emitter_mesh_sample(const Scene *scene, uints id, v2 point, u2 triangle) {
+    uints first = GATHER(uints, scene->emitters, id, .first), count = GATHER(uints, scene->emitters, id, .count), row;
+    ALIAS_ENTRY(scene, light_triangles, first, count, triangle, row)
     uints slot = GATHER(uints, scene->light_triangles, row, .slot);
 
     // Uniform on the triangle: the square folded along its diagonal keeps the strata of `point`.
@@ -14,14 +12,12 @@ static EmitterSample emitter_mesh_sample(const Scene *scene, uints id, v2 point,
     v3 p0 = triangle_vertex(scene, slot, 0), p1 = triangle_vertex(scene, slot, 1), p2 = triangle_vertex(scene, slot, 2);
     v3 e1 = v3_sub(p1, p0), e2 = v3_sub(p2, p0);
     v3 n = v3_cross(e1, e2);
-    real length2 = v3_dot(n, n), inverse_length = rsqrt(length2);
 
     EmitterSample s;
     s.p = v3_mad(e1, u, v3_mad(e2, v, p0));
-    s.normal = v3_scale(n, inverse_length);
+    s.normal = v3_normalize(n);
     s.facing = shading_normal(scene, corner_normals(scene, triangle_id(scene, slot)), u, v, s.normal);
-    s.area = CHOSEN(scene, triangle_choice, uniform) ? R(0.5) * length2 * inverse_length * to_real(count)
-                                                     : GATHER(real, scene->emitters, id, .area);
+    s.pdf = GATHER(real, scene->light_triangles, row, .pdf);
     s.margin = surface_margin(p0, p1, p2);
     s.discrete = NO_LANES;
     return s;

@@ -15,10 +15,10 @@ static mask direct_lighting_step(const Scene *scene, Path *path, Hit hit, mask l
     mask by_bsdf = lit, by_light = lit & !discrete;
     if (CHOSEN(scene, lighting, emitter)) by_bsdf = lit & discrete;
     if (CHOSEN(scene, lighting, mis) && CHOSEN(scene, mis, one_sample)) {
-        mask heads = path_draw(scene, path, DIM_LOBE).y < R(0.5);
-        by_bsdf = lit & (discrete | !heads);
-        by_light = by_light & heads;
-        path->throughput = v3_scale(path->throughput, discrete ? (real)(1) : (real)(2));
+        Choice light = choose((real)(R(0.5)), path_draw(scene, path, DIM_LOBE).y);
+        by_bsdf = lit & (discrete | !light.first);
+        by_light = by_light & light.first;
+        path->throughput = v3_scale(path->throughput, discrete ? (real)(1) : 1 / light.probability);
     }
     if (CHOSEN(scene, lighting, bsdf)) by_light = NO_LANES;
     LightSample light = sample_light(scene, path, s, by_light);

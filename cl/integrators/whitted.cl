@@ -12,6 +12,7 @@ static mask whitted_step(const Scene *scene, Path *path, Hit hit, mask live) {
     path->radiance = v3_add(path->radiance, unless_blocked(scene, sample_light(scene, path, s, found & !specular)));
     if (!ANY(specular)) return specular;
     real u = path_draw(scene, path, DIM_LOBE).y;
-    path->throughput = v3_scale(path->throughput, (real)(1 / WHITTED_SURVIVAL));
-    return scatter(scene, path, s, specular) & (u < WHITTED_SURVIVAL);
+    Choice survives = choose((real)(WHITTED_SURVIVAL), u);
+    path->throughput = v3_scale(path->throughput, 1 / survives.probability);
+    return scatter(scene, path, s, specular) & survives.first;
 }

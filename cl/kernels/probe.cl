@@ -85,15 +85,21 @@ kernel void bsdf_value(SCENE_PARAMETERS, uint id, float wi_x, float wi_y, float 
     put(out, EVAL_PDF, stride, base, pdf);
 }
 
+// Random words whose upper 24 bits give these numbers.
+static u2 bits_of(v2 u) {
+    u2 bits = {to_uints(u.x * GRID) << 8, to_uints(u.y * GRID) << 8};
+    return bits;
+}
+
 // A point on an emitter, chosen too, with the joint density over area.
 kernel void light_draw(SCENE_PARAMETERS, global const float *given, global float *out, uint first, uint stride) {
     BASE_OR_RETURN;
     Scene scene = SCENE_OF_PARAMETERS;
-    uints id = emitter_choose(&scene, get_v2(given, 0, stride, base));
-    EmitterSample s = emitter_sample(&scene, id, get_v2(given, 2, stride, base), get_v2(given, 4, stride, base), ALL_LANES);
+    uints id = emitter_choose(&scene, bits_of(get_v2(given, 0, stride, base)));
+    EmitterSample s = emitter_sample(&scene, id, get_v2(given, 2, stride, base), bits_of(get_v2(given, 4, stride, base)), ALL_LANES);
     put_v3(out, LIGHT_X, stride, base, s.p);
     put_v3(out, LIGHT_FACING_X, stride, base, s.facing);
-    put(out, LIGHT_DENSITY, stride, base, emitter_probability(&scene, id) / s.area);
+    put(out, LIGHT_DENSITY, stride, base, emitter_probability(&scene, id) * s.pdf);
     put_uints(out, LIGHT_ID, stride, base, id);
 }
 
@@ -109,7 +115,7 @@ kernel void trace(SCENE_PARAMETERS, global const float *rays, global float *out,
     mask shining = found & to_mask(s.emitter != OPAL_NONE);
     real density = 0;
     if (EMITTER_KINDS > 0 && ANY(shining))
-        density = shining ? emitter_area_pdf(&scene, uints_pick(shining, s.emitter, (uints)(0)), s.area) : density;
+        density = shining ? emitter_area_pdf(&scene, uints_pick(shining, s.emitter, (uints)(0)), s.triangle) : density;
     put(out, HIT_T, stride, base, found ? s.t : hit.t);
     put(out, HIT_U, stride, base, s.u);
     put(out, HIT_V, stride, base, s.v);

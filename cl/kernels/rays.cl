@@ -44,11 +44,12 @@ static Ray bounce_ray(const Scene *scene, Sampler sampler, Surface s, v3 normal)
 
 // A ray to a point on a light as cl/lighting.cl sends it, or, where there are none, to a point of the box lo + [0, 1]^3 size.
 static Ray shadow_ray(const Scene *scene, Sampler sampler, Surface s, v3 normal, v3 lo, v3 size, mask *live) {
-    v2 point = draw(scene, sampler, (uints)(1 + DIM_LIGHT)), choice = draw(scene, sampler, (uints)(1 + DIM_EMITTER));
-    v3 end = v3_add(lo, v3_mul(size, v3_of(point.x, point.y, choice.x)));
+    v2 point = draw(scene, sampler, (uints)(1 + DIM_LIGHT));
+    u2 choice = draw_bits(scene, sampler, (uints)(1 + DIM_EMITTER));
+    v3 end = v3_add(lo, v3_mul(size, v3_of(point.x, point.y, unit_real(choice.x))));
     if (EMITTER_KINDS > 0) {
         uints id = emitter_choose(scene, choice);
-        EmitterSample light = emitter_sample(scene, id, point, draw(scene, sampler, (uints)(1 + DIM_TRIANGLE)), *live);
+        EmitterSample light = emitter_sample(scene, id, point, draw_bits(scene, sampler, (uints)(1 + DIM_TRIANGLE)), *live);
         v3 to_light = v3_sub(light.p, s.p);
         *live = *live & (light.discrete | (v3_dot(light.facing, to_light) < 0)) & (v3_dot(normal, to_light) > 0);
         end = v3_mad(light.normal, copysign(light.margin, -v3_dot(light.normal, to_light)), light.p);

@@ -104,12 +104,12 @@ private:
         record.inverse_area = float(1 / area);
         record.first = uint(scene.light_triangles.size());
         record.count = end - begin;
-        if (description.strategy[AXIS_triangle_choice] == CHOICE_triangle_choice_uniform)
-            areas.assign(areas.size(), 1);
-        const AliasTable table = build_alias_table(areas);
+        record.first_triangle = begin;
+        const bool uniform = description.strategy[AXIS_triangle_choice] == CHOICE_triangle_choice_uniform;
+        const AliasTable table = build_alias_table(uniform ? std::vector<double>(areas.size(), 1.0) : areas);
         for (uint i = 0; i < record.count; i++)
             scene.light_triangles.push_back(
-                {slots[begin + i], float(table.accept[i]), table.other[i], float(table.probability[i])});
+                {slots[begin + i], float(table.accept[i]), table.other[i], float(table.probability[i] / areas[i])});
         return area;
     }
 

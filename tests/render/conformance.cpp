@@ -75,7 +75,7 @@ TEST_CASE("Wrong kernels are rejected", "[conformance]") {
         {"emitter.cl", "{ return GATHER_V3(scene->emitters, id, .radiance); }", "{ return v3_all((real)(NAN)); }", "furnace.xml", 1000},
         {"lighting.cl", "square(s.t) / (cosine", "s.t / (cosine", "furnace.xml", 100000},              // MIS mixes measures
         {"warp.cl", "R(0.5) * log1p", "R(0.52) * log1p", "chi2_bsdfs.xml", 200000},                       // another exponent
-        {"bsdfs/phong.cl", "b.pd * square_to_cosine_hemisphere_pdf(wo) +", "R(1.02) * b.pd * square_to_cosine_hemisphere_pdf(wo) +",
+        {"bsdfs/phong.cl", "b.base_chance * square_to_cosine_hemisphere_pdf(wo) +", "R(1.02) * b.base_chance * square_to_cosine_hemisphere_pdf(wo) +",
          "chi2_bsdfs.xml", 200000},
     };
     for (const Mutant &m : mutants) {

@@ -14,11 +14,11 @@ const std::string first_only = "to_real(uints_pick(to_mask(path->depth == 1u), (
 const std::vector<Control> furnaces = {
     {{"emitter counted twice at the first hit", "integrators/path.cl", light_hit, "v3_scale(" + light_hit + ", " + first_only + ")"}, "furnace", check_furnace},
     {{"MIS weight left out where a light is hit", "lighting.cl", "path->direct ? (real)(1) : mis_weight(scene, ratio)", "(real)(1)"}, "furnace", check_furnace},
-    {{"roulette without division", "lighting.cl", "plays ? 1 / survival : (real)(1)", "(real)(1)"}, "furnace", check_furnace},
-    {{"roulette by another probability than it divides by", "lighting.cl", "(u < survival)", "(u < square(survival))"}, "furnace", check_furnace},
+    {{"roulette without division", "lighting.cl", "plays ? 1 / survives.probability : (real)(1)", "(real)(1)"}, "furnace", check_furnace},
+    {{"roulette by another probability than it divides by", "lighting.cl", "choose(survival, u)", "choose(survival, square(u))"}, "furnace", check_furnace},
     {{"one segment too many", "integrators/path.cl", "to_mask(path->depth < scene->settings->max_depth)", "to_mask(path->depth <= scene->settings->max_depth)"}, "furnace", check_furnace},
-    {{"whitted's roulette without division", "integrators/whitted.cl", "(real)(1 / WHITTED_SURVIVAL)", "(real)(1)"}, "glass furnace", check_glass_furnace},
-    {{"eta inverted in the scaling of radiance", "bsdfs/dielectric.cl", "reflects ? (real)(1) : square(boundary.inverse_eta)", "reflects ? (real)(1) : square(boundary.eta)"}, "glass furnace", check_glass_furnace},
+    {{"whitted's roulette without division", "integrators/whitted.cl", "v3_scale(path->throughput, 1 / survives.probability)", "path->throughput"}, "glass furnace", check_glass_furnace},
+    {{"eta inverted in the scaling of radiance", "bsdfs/dielectric.cl", "(1 - fresnel) * square(boundary.inverse_eta)", "(1 - fresnel) * square(boundary.eta)"}, "glass furnace", check_glass_furnace},
     {{"rays leave on the normal's side always", "surface.cl", "copysign(s.margin, v3_dot(s.normal, d))", "s.margin"}, "glass furnace", check_glass_furnace},
 };
 
@@ -27,11 +27,11 @@ const std::vector<Control> lights = {
     {{"no cosine at the receiver", "lighting.cl", "emitter_radiance(scene, id)), wo.z * per_density)", "emitter_radiance(scene, id)), per_density)"}, "triangle light", check_triangle_light},
     {{"distance instead of its square", "lighting.cl", "cosine * square(inverse_distance) *", "cosine * inverse_distance *"}, "triangle light", check_triangle_light},
     {{"MIS weighs area against solid angle where a light is hit", "lighting.cl", "* square(s.t) / (cosine * path->pdf)", "/ path->pdf"}, "triangle light", check_triangle_light},
-    {{"MIS weighs area against solid angle where a light is sampled", "lighting.cl", "bsdf_density * per_density)", "bsdf_density * light.area)"}, "triangle light", check_triangle_light},
+    {{"MIS weighs area against solid angle where a light is sampled", "lighting.cl", "bsdf_density * per_density)", "bsdf_density / light.pdf)"}, "triangle light", check_triangle_light},
     {{"lights sampled from behind", "lighting.cl", "(v3_dot(light.facing, to_light) < 0)", "(v3_dot(light.facing, to_light) != 0)"}, "triangle light", check_triangle_light},
     {{"lights seen from behind", "lighting.cl", "to_mask(s.emitter != OPAL_NONE) & (s.wi.z > 0)", "to_mask(s.emitter != OPAL_NONE)"}, "triangle light", check_triangle_light},
-    {{"one sample counted once", "integrators/direct_lighting.cl", "discrete ? (real)(1) : (real)(2)", "(real)(1)"}, "triangle light", check_triangle_light},
-    {{"a point light twice as dense", "emitters/point.cl", "s.area = 1;", "s.area = 0.5f;"}, "point light", check_point_light},
+    {{"one sample counted once", "integrators/direct_lighting.cl", "discrete ? (real)(1) : 1 / light.probability", "(real)(1)"}, "triangle light", check_triangle_light},
+    {{"a point light twice as dense", "emitters/point.cl", "s.pdf = 1;", "s.pdf = 2;"}, "point light", check_point_light},
     {{"simple by the distance", "integrators/simple.cl", "cosine / distance2", "cosine * rsqrt(distance2)"}, "point light", check_point_light},
     {{"one corner's normal taken twice", "surface.cl", "v3_mad(vertex_normal(scene, corners.index[1]), u,", "v3_mad(vertex_normal(scene, corners.index[2]), u,"},
      "normals", check_smooth_normals},
@@ -42,10 +42,16 @@ const std::vector<Control> strategies = {
      "agreement", check_agreement},
     {{"shadow rays that go on behind the light", "lighting.cl", "sample.shadow.tmax = 1;", "sample.shadow.tmax = 2;"},
      "agreement", check_agreement},
-    {{"emitters' choice left out of sampled light", "lighting.cl", "light.area / emitter_probability(scene, id)", "light.area"}, "agreement", check_agreement},
+    {{"emitters' choice left out of sampled light", "lighting.cl", "(light.pdf * emitter_probability(scene, id))", "light.pdf"}, "agreement", check_agreement},
     {{"light behind mirrors and glass taken for sampled", "lighting.cl", "path->direct = sample.discrete;", "path->direct = NO_LANES;"}, "agreement", check_agreement},
     {{"light sampled at mirrors alone", "integrators/path.cl", "found & !bsdf_is_discrete(scene, s.bsdf)", "found & bsdf_is_discrete(scene, s.bsdf)"}, "agreement", check_agreement},
     {{"occlusion without the uniform sample's cosine", "integrators/ao.cl", "cosine ? (real)(1) : 2 * wo.z", "(real)(1)"}, "agreement", check_agreement},
+};
+
+const std::vector<Control> choices = {
+    {{"weights by the probability that was wished for", "rng.cl", "c.probability = c.first ? drawn : 1 - drawn;", "c.probability = c.first ? p : 1 - p;"}, "counted", check_counted},
+    {{"one number more than the probability says", "rng.cl", "c.first = u < drawn;", "c.first = u <= drawn;"}, "counted", check_counted},
+    {{"rows of an alias table by fewer bits", "emitter.cl", "bits & 0xffffff00u", "bits & 0xfffffc00u"}, "counted", check_counted},
 };
 
 const std::vector<Control> films = {
@@ -73,4 +79,5 @@ TEST_CASE("A mutant whose text is not there is an error", "[mutants]") {
 TEST_CASE("Every mutant that furnaces show is killed", "[mutants]") { require_all_killed(furnaces, test_seed(30)); }
 TEST_CASE("Every mutant of the lights is killed", "[mutants]") { require_all_killed(lights, test_seed(31)); }
 TEST_CASE("Every mutant of the strategies is killed", "[mutants]") { require_all_killed(strategies, test_seed(32)); }
+TEST_CASE("Every mutant of discrete choices is killed", "[mutants]") { require_all_killed(choices, test_seed(34)); }
 TEST_CASE("Every mutant of the film is killed", "[mutants]") { require_all_killed(films, test_seed(33)); }

@@ -49,7 +49,7 @@ TEST_CASE("A wrong density is rejected", "[warp_command]") {
     };
     replace("warp.cl", "v3 square_to_cosine_hemisphere(v2 u) { return direction_of(sqrt(1 - u.x), sqrt(u.x)",
             "v3 square_to_cosine_hemisphere(v2 u) { return direction_of(1 - u.x, sqrt(u.x * (2 - u.x))");
-    replace("emitter.cl", "u.y < GATHER(real, scene->emitters, row, .accept)", "u.y < R(0.5)");
+    replace("emitter.cl", "unit_real((u).y) < GATHER(real, (scene)->table, (first) + row_, .accept)", "(u).y < 0x80000000u");
     const std::string mutated = " --cl-dir " + (folder / "cl").string();
     CHECK(warp("cosine_hemisphere" + mutated).exit_code == 1);
     CHECK(warp("light:many --emitter-choice power" + mutated).exit_code == 1);

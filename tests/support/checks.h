@@ -33,6 +33,9 @@ Findings check_triangle_light(const Sources &sources, unsigned seed);
 Findings check_point_light(const Sources &sources, unsigned seed); // of `simple` too
 Findings check_smooth_normals(const Sources &sources, unsigned seed);
 
+// Discrete choices, drawn with the probability that their weights state: to 1e-6, without statistics.
+Findings check_counted(const Sources &sources, unsigned seed);
+
 // Estimators with one expectation, each held against the others: path tracing in a room of all materials; direct light in a matte
 // one, where direct_lighting, whitted and paths of two segments mean the same; ambient occlusion; Russian roulette.
 Findings check_agreement(const Sources &sources, unsigned seed);

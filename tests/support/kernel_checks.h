@@ -19,6 +19,7 @@ Findings check_warps(const Sources &sources, unsigned seed);          // chi-squ
 Findings check_bsdfs(const Sources &sources, unsigned seed);          // the same, and weight = f cos / pdf, and reciprocity
 Findings check_albedos(const Sources &sources, unsigned seed);        // microfacet against quadrature; none above 1
 Findings check_refraction(const Sources &sources, unsigned seed);     // Snell's law and Fresnel's formulas in double
+Findings check_choices(const Sources &sources, unsigned seed);        // shares of BSDFs' parts, number by number
 Findings check_emitters(const Sources &sources, unsigned seed);       // points against their density, all ways to choose
 Findings check_trigonometry(const Sources &sources, unsigned seed);   // cos_sin_2pi against double
 

@@ -4,7 +4,10 @@
 #include "support/kernel_checks.h"
 #include "trust/kernel_probe.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <numeric>
 #include <set>
 
 namespace opal::test {
@@ -154,6 +157,32 @@ Findings check_stratified(const Sources &sources, unsigned seed) {
                 }
             if (spp >= 12)
                 findings.push_back(exact("each dimension and round in an order of its own", orders.size() == 6));
+        }
+    }
+    // Where there are more strata than samples, all are left out alike: the samples past spp of a round fall into those.
+    KernelProbe probe = probe_at(tested_lanes().back(), sources);
+    for (unsigned spp : {11u, 17u, 18u, 19u, 21u, 22u, 23u, 37u, 43u}) {
+        const unsigned columns = unsigned(std::sqrt(double(spp))), rows = (spp + columns - 1) / columns, cells = columns * rows;
+        NumberOptions options;
+        options.sampler = CHOICE_sampler_stratified;
+        options.spp = spp;
+        options.seed = seed;
+        const Planes numbers = probe.numbers(size_t(cells) << 17, options);
+        for (size_t pair = 0; pair < OPAL_PROBE_PAIRS; pair++) {
+            std::vector<double> left_out(cells), by_column(columns), by_row(rows);
+            for (size_t i = 0; i < numbers.count; i++) {
+                if (i % cells < spp)
+                    continue;
+                const unsigned column = unsigned(double(numbers.at(2 * pair, i)) * columns), row = unsigned(double(numbers.at(2 * pair + 1, i)) * rows);
+                left_out[row * columns + column]++;
+                by_column[column]++;
+                by_row[row]++;
+            }
+            for (const std::vector<double> &counts : {left_out, by_column, by_row}) {
+                const double all = std::accumulate(counts.begin(), counts.end(), 0.0);
+                findings.push_back({fmt::format("strata left out alike at {} samples", spp),
+                                    stats::chi_square_test(counts, std::vector<double>(counts.size(), all / double(counts.size()))).p_value});
+            }
         }
     }
     return findings;

@@ -45,6 +45,12 @@ inline std::array<float, 3> vertex(const FlatScene &scene, uint slot, int corner
     return {axes[0][slot % 8], axes[1][slot % 8], axes[2][slot % 8]};
 }
 
+inline double area_of(const FlatScene &scene, uint slot) {
+    const auto a = vertex(scene, slot, 0), b = vertex(scene, slot, 1), c = vertex(scene, slot, 2);
+    const Vec3 p{a[0], a[1], a[2]};
+    return length(cross(Vec3{b[0], b[1], b[2]} - p, Vec3{c[0], c[1], c[2]} - p)) / 2;
+}
+
 inline const std::string &reason(const FlatScene &scene, std::string_view name) {
     for (const Feature &feature : scene.features.list)
         if (feature.name == name)

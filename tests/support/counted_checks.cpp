@@ -1,0 +1,156 @@
+// Probabilities, counted. 2^24 Sobol samples of one pixel give every number k 2^-24 once in each dimension: what is drawn with a stated
+// probability then comes exactly that often, and a picture without other variance is exact. No statistics, no seed: limits are roundings.
+#include "support/checks.h"
+#include "support/kernel_checks.h"
+#include "support/pictures.h"
+#include "support/rooms.h"
+#include "trust/kernel_probe.h"
+#include "support/device.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace opal::test {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double counted_limit = 1e-6; // relative
+
+Finding counted(const std::string &what, SceneDescription scene, const Overrides &how, double truth, const Sources &sources) {
+    scene.camera.width = scene.camera.height = 1;
+    scene.strategy[AXIS_sampler] = CHOICE_sampler_sobol;
+    Shot shot;
+    shot.sources = &sources;
+    const double got = sample_of(render(with(std::move(scene), how), 1u << 24, 0, shot), 0).mean;
+    return exact(fmt::format("{}: {:.9g}, not {:.9g}, off by {:.2g}", what, got, truth, got / truth - 1), std::abs(got / truth - 1) <= counted_limit);
+}
+
+// A patch of that albedo in a black room that emits 1: each path that survives the patch carries albedo / survival home.
+SceneDescription dark_patch(double albedo) {
+    SceneDescription scene = furnace(0, 1);
+    scene.meshes.push_back(diffuse(Parallelogram{{-0.1, -0.5, -0.1}, {0, 0, 0.2}, {0.2, 0, 0}}, float(albedo), true));
+    scene.camera = camera({0, 0, 0}, {0, -0.5, 0}, 1, 1, 1);
+    scene.strategy.rr_depth = 1;
+    return scene;
+}
+const Overrides dark_path = {{"lighting", "bsdf"}, {"rr", "throughput"}};
+
+// point_light, its lamp the first of several; the others lie below the floor, which hides them.
+SceneDescription lamps(const std::vector<double> &others) {
+    SceneDescription scene = point_light();
+    scene.camera.fov = 1e-5; // one point, however few samples choose the lamp
+    for (double power : others)
+        scene.point_lights.push_back({{0.1, -1, 0.2}, {power, power, power}, {}});
+    return scene;
+}
+
+double fresnel_at_normal(double near, double far) { return std::pow((near - far) / (near + far), 2); }
+
+// A pane seen at right angles: what it reflects shines, what it lets through meets nothing.
+SceneDescription reflection(float index) {
+    BsdfRecord glass = bsdf_record(BSDF_dielectric);
+    glass.u.dielectric = {index, 1};
+    SceneDescription scene = scene_of({made_of(quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), glass),
+                                       light(Parallelogram{{-1, 2, -1}, {2, 0, 0}, {0, 0, 2}}, {1, 1, 1})});
+    scene.camera = camera({0, 1, 0}, {0, 0, 0}, 1, 1, 1e-3);
+    scene.strategy.max_depth = 2;
+    return scene;
+}
+
+// A mesh light of which the floor sees one small triangle, straight above; all others are of the same size and look up.
+constexpr double small = 1.0 / 2048;
+SceneDescription one_triangle_of(unsigned count) {
+    SceneDescription scene = triangle_light();
+    scene.meshes.pop_back();
+    TriangleMesh mesh;
+    for (unsigned i = 0; i < count; i++) { // multiples of 2^-12: exact in float, and so all areas are one
+        const Vec3 o = i == 0 ? Vec3{0.25, 1, 0.25} : Vec3{0.5 + small * (i % 1024), 1, small * double(i / 1024)};
+        const Vec3 u{small, 0, 0}, v{0, 0, small};
+        const unsigned first = unsigned(mesh.positions.size());
+        mesh.positions.insert(mesh.positions.end(), {o, i == 0 ? o + u : o + v, i == 0 ? o + v : o + u});
+        mesh.triangles.push_back({{{first, OPAL_NONE}, {first + 1, OPAL_NONE}, {first + 2, OPAL_NONE}}});
+    }
+    scene.meshes.push_back(light(mesh, {1e6, 1e6, 1e6}));
+    scene.camera = camera({1, 0.5, -1}, {0.25 + small / 3, 0, 0.25 + small / 3}, 1, 1, 1e-5);
+    return scene;
+}
+double one_triangle_truth() { return 0.8 / pi * 1e6 * small * small / 2; } // cosines and distance 1, but for small^2
+
+} // namespace
+
+Findings check_counted(const Sources &sources, unsigned) {
+    const double lamp = point_light_truth(), third = double(float(0.01));
+    Findings findings;
+    findings.push_back(counted("roulette, albedo 0.01", dark_patch(0.01), dark_path, third, sources));
+    findings.push_back(counted("roulette, albedo 1e-6", dark_patch(1e-6), dark_path, double(1e-6f), sources));
+    SceneDescription fixed = dark_patch(0.5);
+    fixed.strategy.rr_prob = 1e-5;
+    findings.push_back(counted("fixed roulette, 1e-5", fixed, {{"lighting", "bsdf"}, {"rr", "fixed"}}, 0.5, sources));
+
+    const Overrides by_light = {{"lighting", "emitter"}}, by_power = {{"lighting", "emitter"}, {"emitter-choice", "power"}};
+    findings.push_back(counted("one lamp of three", lamps({50, 50}), by_light, lamp, sources));
+    findings.push_back(counted("one lamp of 1000", lamps(std::vector<double>(999, 50)), by_light, lamp, sources));
+    // Row and accept are two numbers: their pairs come exactly as often as they should where both shares are even, as here.
+    SceneDescription dim = lamps({1e8});
+    dim.point_lights[0].power = {100, 100, 100};
+    findings.push_back(counted("a lamp of 1e-6 of another's power", dim, by_power, lamp, sources));
+
+    for (float index : {1.001f, 1.01f, 1.33f})
+        findings.push_back(counted(fmt::format("reflection, index {}", index), reflection(index), {{"lighting", "bsdf"}, {"rr", "off"}},
+                                   fresnel_at_normal(1, double(index)), sources));
+
+    for (const char *choice : {"area", "uniform"})
+        findings.push_back(counted(fmt::format("one triangle of 100 003 by {}", choice), one_triangle_of(100003),
+                                   {{"lighting", "emitter"}, {"triangle-choice", choice}}, one_triangle_truth(), sources));
+    return findings;
+}
+
+Findings check_choices(const Sources &sources, unsigned) {
+    // The share of the diffuse part: how many numbers of the lobe lead to it, and what the density says, where the other part has none.
+    Findings findings;
+    const auto probe_of = [&](const BsdfRecord &record, int lanes) {
+        BuildOptions build;
+        build.lanes = lanes;
+        return KernelProbe(device(), scene_of_bsdfs({record}), build, sources);
+    };
+    const Vec3 wi = normalize({0.8, 0, 0.6}), away = normalize({0.8, 0, 0.6}); // the mirrored direction is far from `away`
+    const auto judge = [&](const std::string &what, const BsdfRecord &record, bool diffuse_first, double wished) {
+        for (int lanes : tested_lanes()) {
+            KernelProbe probe = probe_of(record, lanes);
+            const double stated_diffuse = double(probe.bsdf_eval(0, wi, std::vector{away}).at(EVAL_PDF, 0)) * pi / away.z;
+            const double stated = diffuse_first ? stated_diffuse : 1 - stated_diffuse;
+            // Of the numbers around the stated count k, those below it and no others choose what comes first.
+            const double k = std::round(std::ldexp(stated, 24));
+            Planes numbers(3, 8);
+            for (size_t i = 0; i < 8; i++) {
+                numbers.at(0, i) = 0.3f;
+                numbers.at(1, i) = 0.1f;
+                numbers.at(2, i) = float(std::ldexp(std::clamp(k + double(i) - 4, 0.0, 0x1p24 - 1), -24));
+            }
+            numbers.at(2, 6) = 0;
+            numbers.at(2, 7) = 0x1.fffffep-1f;
+            const Planes drawn = probe.bsdf_sample(0, wi, numbers);
+            const auto same = [&](size_t a, size_t b) { return length(drawn.vec3(BSDF_WO_X, a) - drawn.vec3(BSDF_WO_X, b)) < 1e-6; };
+            size_t wrong = same(6, 7);
+            for (size_t i = 0; i < 6; i++)
+                wrong += !same(i, double(numbers.at(2, i)) * 0x1p24 < k ? 6 : 7);
+            findings.push_back(exact(fmt::format("{} at {} lanes: drawn as {:.9g} says, for {:.9g}: {} of 7 numbers wrong", what, lanes, k * 0x1p-24, wished, wrong),
+                                     wrong == 0 && k * 0x1p-24 >= wished * (1 - 1e-7) && k * 0x1p-24 <= wished + 0x1p-24));
+        }
+    };
+    for (float share : {1e-6f, 3e-4f, 0.3f, 0.999f}) {
+        BsdfRecord phong = bsdf_record(BSDF_phong);
+        phong.u.phong.pd = share;
+        phong.u.phong.n = 1e4f;
+        judge("Phong's diffuse part", phong, true, double(share));
+        BsdfRecord coated = bsdf_record(BSDF_microfacet, 1 - share);
+        coated.u.microfacet.alpha = 0.01f;
+        judge("the microfacets' coat", coated, false, double(coated.u.microfacet.ks));
+    }
+    return findings;
+}
+
+} // namespace opal::test
