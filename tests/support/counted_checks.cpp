@@ -109,46 +109,52 @@ Findings check_counted(const Sources &sources, unsigned) {
 }
 
 Findings check_choices(const Sources &sources, unsigned) {
-    // The share of the diffuse part: how many numbers of the lobe lead to it, and what the density says, where the other part has none.
     Findings findings;
-    const auto probe_of = [&](const BsdfRecord &record, int lanes) {
+    const Vec3 wi = normalize({0.8, 0, 0.6}), mirrored{-wi.x, -wi.y, wi.z};
+    // `stated`: the probability by the density. Of the numbers of the lobe around it, those below and no others choose what comes first.
+    const auto judge = [&](const std::string &what, KernelProbe &probe, double stated, double wished) {
+        const double k = std::round(std::ldexp(stated, 24));
+        Planes numbers(3, 8);
+        for (size_t i = 0; i < 8; i++) {
+            numbers.at(0, i) = 0.3f;
+            numbers.at(1, i) = 0.1f;
+            numbers.at(2, i) = float(std::ldexp(std::clamp(k + double(i) - 3, 0.0, 0x1p24 - 1), -24));
+        }
+        numbers.at(2, 6) = 0;
+        numbers.at(2, 7) = 0x1.fffffep-1f;
+        const Planes drawn = probe.bsdf_sample(0, wi, numbers);
+        const auto same = [&](size_t a, size_t b) { return length(drawn.vec3(BSDF_WO_X, a) - drawn.vec3(BSDF_WO_X, b)) < 1e-6; };
+        size_t wrong = same(6, 7);
+        for (size_t i = 0; i < 6; i++)
+            wrong += !same(i, double(numbers.at(2, i)) * 0x1p24 < k ? 6 : 7);
+        findings.push_back(exact(fmt::format("{}: drawn as {:.9g} says, for {:.9g}: {} of 7 numbers wrong", what, stated, wished, wrong),
+                                 wrong == 0 && std::abs(stated / (k * 0x1p-24) - 1) < 1e-6 && stated >= wished * (1 - 1e-6) && stated <= wished + 0x1p-24));
+    };
+    for (int lanes : tested_lanes()) {
         BuildOptions build;
         build.lanes = lanes;
-        return KernelProbe(device(), scene_of_bsdfs({record}), build, sources);
-    };
-    const Vec3 wi = normalize({0.8, 0, 0.6}), away = normalize({0.8, 0, 0.6}); // the mirrored direction is far from `away`
-    const auto judge = [&](const std::string &what, const BsdfRecord &record, bool diffuse_first, double wished) {
-        for (int lanes : tested_lanes()) {
-            KernelProbe probe = probe_of(record, lanes);
-            const double stated_diffuse = double(probe.bsdf_eval(0, wi, std::vector{away}).at(EVAL_PDF, 0)) * pi / away.z;
-            const double stated = diffuse_first ? stated_diffuse : 1 - stated_diffuse;
-            // Of the numbers around the stated count k, those below it and no others choose what comes first.
-            const double k = std::round(std::ldexp(stated, 24));
-            Planes numbers(3, 8);
-            for (size_t i = 0; i < 8; i++) {
-                numbers.at(0, i) = 0.3f;
-                numbers.at(1, i) = 0.1f;
-                numbers.at(2, i) = float(std::ldexp(std::clamp(k + double(i) - 4, 0.0, 0x1p24 - 1), -24));
-            }
-            numbers.at(2, 6) = 0;
-            numbers.at(2, 7) = 0x1.fffffep-1f;
-            const Planes drawn = probe.bsdf_sample(0, wi, numbers);
-            const auto same = [&](size_t a, size_t b) { return length(drawn.vec3(BSDF_WO_X, a) - drawn.vec3(BSDF_WO_X, b)) < 1e-6; };
-            size_t wrong = same(6, 7);
-            for (size_t i = 0; i < 6; i++)
-                wrong += !same(i, double(numbers.at(2, i)) * 0x1p24 < k ? 6 : 7);
-            findings.push_back(exact(fmt::format("{} at {} lanes: drawn as {:.9g} says, for {:.9g}: {} of 7 numbers wrong", what, lanes, k * 0x1p-24, wished, wrong),
-                                     wrong == 0 && k * 0x1p-24 >= wished * (1 - 1e-7) && k * 0x1p-24 <= wished + 0x1p-24));
+        const auto probe_of = [&](const BsdfRecord &record) { return KernelProbe(device(), scene_of_bsdfs({record}), build, sources); };
+        const auto density = [&](KernelProbe &probe, Vec3 wo) { return double(probe.bsdf_eval(0, wi, std::vector{wo}).at(EVAL_PDF, 0)); };
+        const auto coated = [](float ks) {
+            BsdfRecord record = bsdf_record(BSDF_microfacet, 1 - ks);
+            record.u.microfacet.alpha = 0.001f;
+            record.u.microfacet.ks = ks;
+            return record;
+        };
+        KernelProbe half = probe_of(coated(0.5f)); // drawn as wished: it tells the density of the coat alone, beside the base's
+        const double base = wi.z / pi, coat = 2 * density(half, mirrored) - base;
+        for (float share : {1e-6f, 3e-4f, 0.3f}) {
+            BsdfRecord phong = bsdf_record(BSDF_phong);
+            phong.u.phong.pd = share;
+            phong.u.phong.n = 1e4f; // nothing of the lobe goes back to the viewer
+            KernelProbe probe = probe_of(phong);
+            judge(fmt::format("Phong's diffuse part at {} lanes", lanes), probe, density(probe, wi) * pi / wi.z, double(share));
+            if (share > 0.1f)
+                continue; // densities are floats: more numbers than they tell apart
+            KernelProbe coated_probe = probe_of(coated(share));
+            judge(fmt::format("the microfacets' coat at {} lanes", lanes), coated_probe, (density(coated_probe, mirrored) - base) / (coat - base),
+                  double(share));
         }
-    };
-    for (float share : {1e-6f, 3e-4f, 0.3f, 0.999f}) {
-        BsdfRecord phong = bsdf_record(BSDF_phong);
-        phong.u.phong.pd = share;
-        phong.u.phong.n = 1e4f;
-        judge("Phong's diffuse part", phong, true, double(share));
-        BsdfRecord coated = bsdf_record(BSDF_microfacet, 1 - share);
-        coated.u.microfacet.alpha = 0.01f;
-        judge("the microfacets' coat", coated, false, double(coated.u.microfacet.ks));
     }
     return findings;
 }
