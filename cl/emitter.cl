@@ -4,7 +4,7 @@ typedef struct {
     v3 p;            // the point
     v3 normal;       // geometric normal there, unit
     v3 facing;       // shading normal there: light leaves on its side
-    real pdf;        // density of p over area, given the emitter, 1/m^2 in flattened units; 1 for a point light
+    real area;       // 1 / density of p over area, m^2 in flattened units, given the emitter; 1 for a point light
     real margin;     // as in Surface
     mask discrete;   // a point light: no direction hits it by chance
 } EmitterSample;
@@ -46,8 +46,7 @@ static EmitterSample emitter_sample(const Scene *scene, uints id, v2 point, u2 t
     EmitterSample s;
     uints kind = GATHER(uints, scene->emitters, id, .kind);
     s.p = s.normal = s.facing = v3_all((real)(0));
-    s.pdf = 1;
-    s.margin = 0;
+    s.area = s.margin = 0;
     s.discrete = NO_LANES;
 #define SAMPLE_EMITTER(name) \
     if (OPAL_HAS_emitter_##name) { \
@@ -55,7 +54,7 @@ static EmitterSample emitter_sample(const Scene *scene, uints id, v2 point, u2 t
         if (ANY(m)) { \
             EmitterSample t = emitter_##name##_sample(scene, id, point, triangle); \
             s.p = v3_pick(m, t.p, s.p); s.normal = v3_pick(m, t.normal, s.normal); s.facing = v3_pick(m, t.facing, s.facing); \
-            s.pdf = m ? t.pdf : s.pdf; s.margin = m ? t.margin : s.margin; \
+            s.area = m ? t.area : s.area; s.margin = m ? t.margin : s.margin; \
             s.discrete = s.discrete | (m & t.discrete); \
         } \
     }
@@ -66,12 +65,12 @@ static EmitterSample emitter_sample(const Scene *scene, uints id, v2 point, u2 t
 static v3 emitter_radiance(const Scene *scene, uints id) { return GATHER_V3(scene->emitters, id, .radiance); }
 
 // Density over area with which light sampling finds a point on a triangle of an area light, all choices included.
-static real emitter_area_pdf(const Scene *scene, uints id, uints triangle) {
+static real emitter_area_pdf(const Scene *scene, uints id, uints triangle, mask live) {
     real pdf = GATHER(real, scene->emitters, id, .inverse_area);
     if (OPAL_HAS_emitter_mesh) {
-        mask mesh = to_mask(GATHER(uints, scene->emitters, id, .kind) == EMITTER_mesh);
+        mask mesh = live & to_mask(GATHER(uints, scene->emitters, id, .kind) == EMITTER_mesh);
         uints row = GATHER(uints, scene->emitters, id, .first) + (triangle - GATHER(uints, scene->emitters, id, .first_triangle));
-        pdf = mesh ? GATHER(real, scene->light_triangles, uints_pick(mesh, row, (uints)(0)), .pdf) : pdf;
+        pdf = mesh ? 1 / GATHER(real, scene->light_triangles, uints_pick(mesh, row, (uints)(0)), .area) : pdf;
     }
     return pdf * emitter_probability(scene, id);
 }

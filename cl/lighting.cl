@@ -32,7 +32,7 @@ static v3 emitted(const Scene *scene, const Path *path, Surface s, mask found) {
     if (CHOSEN(scene, lighting, mis)) {
         // Both densities over solid angle; the light's is turned by distance^2 / cosine.
         real cosine = fabs(v3_dot(s.normal, path->ray.d));
-        real ratio = emitter_area_pdf(scene, id, s.triangle) * square(s.t) / (cosine * path->pdf);
+        real ratio = emitter_area_pdf(scene, id, s.triangle, shining) * square(s.t) / (cosine * path->pdf);
         radiance = v3_scale(radiance, path->direct ? (real)(1) : mis_weight(scene, ratio));
     }
     return v3_pick(shining, radiance, none);
@@ -66,7 +66,7 @@ static LightSample sample_light(const Scene *scene, const Path *path, Surface s,
 
     // cos / distance^2 turns a density over area into one over solid angle.
     real cosine = light.discrete ? (real)(1) : fabs(v3_dot(light.normal, to_light)) * inverse_distance;
-    real per_density = cosine * square(inverse_distance) / (light.pdf * emitter_probability(scene, id));
+    real per_density = cosine * square(inverse_distance) * light.area / emitter_probability(scene, id);
     real bsdf_density;
     v3 f = bsdf_eval(scene, s.bsdf, s.wi, wo, live, &bsdf_density);
     if (CHOSEN(scene, lighting, mis)) {

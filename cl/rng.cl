@@ -49,23 +49,23 @@ static Sampler sampler_start(uints pixel, uints sample, uint seed) {
 // The upper 24 bits as a number in [0, 1).
 static real unit_real(uints bits) { return to_real(bits >> 8) * GRID_STEP; }
 
-// The probability with which a choice of probability p, 0 to 1, is drawn. A random number u is k 2^-24, so that u < p comes true with
-// probability ceil(p 2^24) 2^-24, and a weight that divides by p would be wrong for ever: by 1 % where p is 1e-6. What is not certain
-// keeps a chance not to happen.
+// The probability with which a choice of probability p, 0 to 1, is drawn: a random number u is k 2^-24, so that u < p comes true with
+// probability ceil(p 2^24) 2^-24. A weight that divides by p would be wrong for ever, by 1 % where p is 1e-6.
 static real drawn_probability(real p) {
-    return real_min(ceil(p * GRID), p < 1 ? (real)(GRID - 1) : (real)(GRID)) * GRID_STEP;
+    real numbers = p * GRID, whole = to_real(CAT(convert_, WIDE(int))(numbers)); // ceil() is a dozen instructions on PoCL
+    return (whole < numbers ? whole + 1 : whole) * GRID_STEP;
 }
 
 // A choice between two things by the number u. Weights divide by the probability that it tells, never by the one that was wished for.
 typedef struct {
-    mask first;        // u < drawn_probability(p)
+    mask first;        // u < p
     real probability;  // of what was chosen
 } Choice;
 
 static Choice choose(real p, real u) {
     real drawn = drawn_probability(p);
     Choice c;
-    c.first = u < drawn;
+    c.first = u < p;
     c.probability = c.first ? drawn : 1 - drawn;
     return c;
 }

@@ -40,7 +40,7 @@ typedef struct {
     uint slot;            // where its vertices are: TriangleBlock slot / 8, place slot % 8
     float accept;
     uint other;
-    float pdf;            // density over area of points drawn on it, given the light: its probability (--triangle-choice) over its area
+    float area;           // 1 / density over area of points drawn on it, given the light: its area over its probability (--triangle-choice)
 } LightTriangle;
 OPAL_SIZE_CHECK(LightTriangle, 16);
 

@@ -17,7 +17,7 @@ static EmitterSample emitter_mesh_sample(const Scene *scene, uints id, v2 point,
     s.p = v3_mad(e1, u, v3_mad(e2, v, p0));
     s.normal = v3_normalize(n);
     s.facing = shading_normal(scene, corner_normals(scene, triangle_id(scene, slot)), u, v, s.normal);
-    s.pdf = GATHER(real, scene->light_triangles, row, .pdf);
+    s.area = GATHER(real, scene->light_triangles, row, .area);
     s.margin = surface_margin(p0, p1, p2);
     s.discrete = NO_LANES;
     return s;

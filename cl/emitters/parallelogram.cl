@@ -6,7 +6,7 @@ static EmitterSample emitter_parallelogram_sample(const Scene *scene, uints id, 
     EmitterSample s;
     s.p = v3_mad(u, point.x, v3_mad(v, point.y, o));
     s.normal = s.facing = GATHER_V3(scene->emitters, id, .normal);
-    s.pdf = GATHER(real, scene->emitters, id, .inverse_area);
+    s.area = GATHER(real, scene->emitters, id, .area);
     s.margin = surface_margin(o, v3_add(o, v3_add(u, v)), v3_add(o, u));
     s.discrete = NO_LANES;
     return s;

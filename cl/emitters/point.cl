@@ -4,7 +4,7 @@ static EmitterSample emitter_point_sample(const Scene *scene, uints id, v2 point
     EmitterSample s;
     s.p = GATHER_V3(scene->emitters, id, .origin);
     s.normal = s.facing = v3_all((real)(0));
-    s.pdf = 1;
+    s.area = 1;
     s.margin = 0;
     s.discrete = ALL_LANES;
     return s;

@@ -99,7 +99,7 @@ kernel void light_draw(SCENE_PARAMETERS, global const float *given, global float
     EmitterSample s = emitter_sample(&scene, id, get_v2(given, 2, stride, base), bits_of(get_v2(given, 4, stride, base)), ALL_LANES);
     put_v3(out, LIGHT_X, stride, base, s.p);
     put_v3(out, LIGHT_FACING_X, stride, base, s.facing);
-    put(out, LIGHT_DENSITY, stride, base, emitter_probability(&scene, id) * s.pdf);
+    put(out, LIGHT_DENSITY, stride, base, emitter_probability(&scene, id) / s.area);
     put_uints(out, LIGHT_ID, stride, base, id);
 }
 
@@ -115,7 +115,7 @@ kernel void trace(SCENE_PARAMETERS, global const float *rays, global float *out,
     mask shining = found & to_mask(s.emitter != OPAL_NONE);
     real density = 0;
     if (EMITTER_KINDS > 0 && ANY(shining))
-        density = shining ? emitter_area_pdf(&scene, uints_pick(shining, s.emitter, (uints)(0)), s.triangle) : density;
+        density = shining ? emitter_area_pdf(&scene, uints_pick(shining, s.emitter, (uints)(0)), s.triangle, shining) : density;
     put(out, HIT_T, stride, base, found ? s.t : hit.t);
     put(out, HIT_U, stride, base, s.u);
     put(out, HIT_V, stride, base, s.v);

@@ -16,7 +16,7 @@
     MEMBER(Settings, rr_prob) MEMBER(Settings, light_energy) MEMBER(Settings, filter_c) MEMBER(Settings, choices) \
     MEMBER(BsdfRecord, u.diffuse.use_cosine) MEMBER(BsdfRecord, u.dielectric.ext_ior) MEMBER(BsdfRecord, u.microfacet.kd) \
     MEMBER(BsdfRecord, u.phong.n) MEMBER(EmitterRecord, area) MEMBER(EmitterRecord, v) MEMBER(EmitterRecord, probability) \
-    MEMBER(EmitterRecord, other) MEMBER(LightTriangle, pdf)
+    MEMBER(EmitterRecord, other) MEMBER(LightTriangle, area)
 
 // Functions that rendering uses: MATH(name, on the device, on the host in double, lowest x, highest x, scale, limit).
 // The error is counted in ulp of the larger of |result| and scale; limit: what OpenCL C 1.2, table 7.4, allows in ulp, and

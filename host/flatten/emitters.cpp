@@ -109,7 +109,7 @@ private:
         const AliasTable table = build_alias_table(uniform ? std::vector<double>(areas.size(), 1.0) : areas);
         for (uint i = 0; i < record.count; i++)
             scene.light_triangles.push_back(
-                {slots[begin + i], float(table.accept[i]), table.other[i], float(table.probability[i] / areas[i])});
+                {slots[begin + i], float(table.accept[i]), table.other[i], float(areas[i] / table.probability[i])});
         return area;
     }
 

@@ -10,7 +10,7 @@ namespace opal {
 
 namespace {
 
-constexpr double least_detail = 1e-3;    // of a mesh, the scene being 1
+constexpr double least_detail = 2e-3;    // of a mesh, the scene being 1: what is seen of it is right to about 1e-5
 constexpr double farthest_camera = 1e3;  // in sizes of the scene
 constexpr float least_alpha = 1e-6f, largest_exponent = 1e8f;
 constexpr double largest_radiance = 1e18, least_radiance = 1e-18; // their squares are summed in floats, for the error bars
@@ -49,8 +49,10 @@ private:
     void check_size(const Mesh &mesh) {
         const double part = extent_of(mesh).longest_side() / extent.longest_side();
         if (part > 0 && part < least_detail)
-            say(mesh.place, "{} is {:.1e} of the scene's size: rays start {:.1g} of its own size above it, and may pass what is nearer", mesh.name, part,
-                1.4e-6 / part);
+            say(mesh.place,
+                "{} is {:.1e} of the scene's size: rays start {:.1g} of its own size above it, what is seen of it may be off by more than 1e-5, and rays "
+                "may pass what is nearer",
+                mesh.name, part, 1.4e-6 / part);
     }
 
     void check_light(const Mesh &mesh, double radiance, bool emits) {

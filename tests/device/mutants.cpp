@@ -77,7 +77,7 @@ const std::vector<Control> densities = {
     {{"triangle's alias never taken", "emitters/mesh.cl", "ALIAS_ENTRY(scene, light_triangles, first, count, triangle, row)", "row = first + alias_row(triangle.x, count);"}, "emitters", check_emitters},
     {{"the triangle's half of the square alone", "emitters/mesh.cl", "real u = folded ? 1 - point.x : point.x, v = folded ? 1 - point.y : point.y;", "real u = point.x, v = point.y * (1 - point.x);"}, "emitters",
      check_emitters},
-    {{"density of the mesh for that of the triangle", "emitters/mesh.cl", "GATHER(real, scene->light_triangles, row, .pdf)", "GATHER(real, scene->emitters, id, .inverse_area)"}, "emitters", check_emitters},
+    {{"density of the mesh for that of the triangle", "emitters/mesh.cl", "GATHER(real, scene->light_triangles, row, .area)", "GATHER(real, scene->emitters, id, .area)"}, "emitters", check_emitters},
     {{"emitters' choice left out of the density", "emitter.cl", "return pdf * emitter_probability(scene, id);", "return pdf;"}, "emitters", check_emitters},
     {{"light's normal reversed", "emitters/parallelogram.cl", "GATHER_V3(scene->emitters, id, .normal);", "v3_neg(GATHER_V3(scene->emitters, id, .normal));"}, "emitters", check_emitters},
     {{"a coefficient of the sine", "math.cl", "R(8.3333333333333333e-03)", "R(8.333e-03)"}, "turns", check_trigonometry},

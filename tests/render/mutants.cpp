@@ -27,11 +27,11 @@ const std::vector<Control> lights = {
     {{"no cosine at the receiver", "lighting.cl", "emitter_radiance(scene, id)), wo.z * per_density)", "emitter_radiance(scene, id)), per_density)"}, "triangle light", check_triangle_light},
     {{"distance instead of its square", "lighting.cl", "cosine * square(inverse_distance) *", "cosine * inverse_distance *"}, "triangle light", check_triangle_light},
     {{"MIS weighs area against solid angle where a light is hit", "lighting.cl", "* square(s.t) / (cosine * path->pdf)", "/ path->pdf"}, "triangle light", check_triangle_light},
-    {{"MIS weighs area against solid angle where a light is sampled", "lighting.cl", "bsdf_density * per_density)", "bsdf_density / light.pdf)"}, "triangle light", check_triangle_light},
+    {{"MIS weighs area against solid angle where a light is sampled", "lighting.cl", "bsdf_density * per_density)", "bsdf_density * light.area)"}, "triangle light", check_triangle_light},
     {{"lights sampled from behind", "lighting.cl", "(v3_dot(light.facing, to_light) < 0)", "(v3_dot(light.facing, to_light) != 0)"}, "triangle light", check_triangle_light},
     {{"lights seen from behind", "lighting.cl", "to_mask(s.emitter != OPAL_NONE) & (s.wi.z > 0)", "to_mask(s.emitter != OPAL_NONE)"}, "triangle light", check_triangle_light},
     {{"one sample counted once", "integrators/direct_lighting.cl", "discrete ? (real)(1) : 1 / light.probability", "(real)(1)"}, "triangle light", check_triangle_light},
-    {{"a point light twice as dense", "emitters/point.cl", "s.pdf = 1;", "s.pdf = 2;"}, "point light", check_point_light},
+    {{"a point light twice as dense", "emitters/point.cl", "s.area = 1;", "s.area = 0.5f;"}, "point light", check_point_light},
     {{"simple by the distance", "integrators/simple.cl", "cosine / distance2", "cosine * rsqrt(distance2)"}, "point light", check_point_light},
     {{"one corner's normal taken twice", "surface.cl", "v3_mad(vertex_normal(scene, corners.index[1]), u,", "v3_mad(vertex_normal(scene, corners.index[2]), u,"},
      "normals", check_smooth_normals},
@@ -42,7 +42,7 @@ const std::vector<Control> strategies = {
      "agreement", check_agreement},
     {{"shadow rays that go on behind the light", "lighting.cl", "sample.shadow.tmax = 1;", "sample.shadow.tmax = 2;"},
      "agreement", check_agreement},
-    {{"emitters' choice left out of sampled light", "lighting.cl", "(light.pdf * emitter_probability(scene, id))", "light.pdf"}, "agreement", check_agreement},
+    {{"emitters' choice left out of sampled light", "lighting.cl", "light.area / emitter_probability(scene, id)", "light.area"}, "agreement", check_agreement},
     {{"light behind mirrors and glass taken for sampled", "lighting.cl", "path->direct = sample.discrete;", "path->direct = NO_LANES;"}, "agreement", check_agreement},
     {{"light sampled at mirrors alone", "integrators/path.cl", "found & !bsdf_is_discrete(scene, s.bsdf)", "found & bsdf_is_discrete(scene, s.bsdf)"}, "agreement", check_agreement},
     {{"occlusion without the uniform sample's cosine", "integrators/ao.cl", "cosine ? (real)(1) : 2 * wo.z", "(real)(1)"}, "agreement", check_agreement},
@@ -50,7 +50,7 @@ const std::vector<Control> strategies = {
 
 const std::vector<Control> choices = {
     {{"weights by the probability that was wished for", "rng.cl", "c.probability = c.first ? drawn : 1 - drawn;", "c.probability = c.first ? p : 1 - p;"}, "counted", check_counted},
-    {{"one number more than the probability says", "rng.cl", "c.first = u < drawn;", "c.first = u <= drawn;"}, "counted", check_counted},
+    {{"one number more than the probability says", "rng.cl", "c.first = u < p;", "c.first = u < p + GRID_STEP;"}, "counted", check_counted},
     {{"rows of an alias table by fewer bits", "emitter.cl", "bits & 0xffffff00u", "bits & 0xfffffc00u"}, "counted", check_counted},
 };
 

@@ -265,7 +265,7 @@ Findings check_emitters(const Sources &sources, unsigned seed) {
                 for (const EmitterRecord &emitter : flat.emitters)
                     sum += emitter.probability;
                 for (const LightTriangle &triangle : flat.light_triangles)
-                    triangles += triangle.pdf * area_of(flat, triangle.slot);
+                    triangles += area_of(flat, triangle.slot) / triangle.area;
                 findings.push_back(exact(what + ": probabilities sum to 1", std::abs(sum - 1) < 1e-6 && std::abs(triangles - 1) < 1e-6));
                 KernelProbe probe = probe_of(flat, lanes, sources);
                 findings.push_back(densities_agree(what, probe, seed + unsigned(findings.size())));
