@@ -130,10 +130,9 @@ static mask roulette(const Scene *scene, Path *path, mask live, real u) {
     if (!CHOSEN(scene, rr, fixed)) {
         survival = v3_largest(path->throughput);
         if (CHOSEN(scene, rr, throughput_eta)) survival = survival * square(path->eta);
-        survival = real_min(survival, (real)(ROULETTE_MOST));
+        survival = drawn_probability(real_min(survival, (real)(ROULETTE_MOST)));
     }
     mask plays = live & to_mask(path->depth > scene->settings->rr_depth);
-    Choice survives = choose(survival, u);
-    path->throughput = v3_scale(path->throughput, plays ? 1 / survives.probability : (real)(1));
-    return live & (!plays | survives.first);
+    path->throughput = v3_scale(path->throughput, plays ? 1 / survival : (real)(1));
+    return live & (!plays | (u < survival));
 }

@@ -79,7 +79,7 @@ typedef struct {
     uint emitter_count;
     uint max_depth;                 // segments of the longest path: 1 shows emitters, 2 adds direct light; OPAL_NONE: no limit
     uint rr_depth;                  // roulette starts when a path has this many segments
-    float rr_prob;                  // --rr fixed: probability to survive
+    float rr_prob;                  // --rr fixed: probability to survive, a multiple of 2^-24 as random numbers are
     uint normals_signed;            // integrator normals: n/2 + 1/2 (1) or |n| (0)
     float light_position[3];        // integrator simple
     float light_energy[3];          // integrator simple, W, times FlatScene::scale^2

@@ -10,18 +10,19 @@
 namespace opal {
 namespace {
 
+constexpr int accept_bits = 24; // of a random number
+
 // Rounds `accept` up to what 24 bits can draw, and counts the pairs of random numbers that lead to each index.
 void state_what_is_drawn(std::span<const double> weights, AliasTable &table) {
-    constexpr int accept_bits = 24;
     const std::uint64_t count = weights.size(), all = std::uint64_t(1) << accept_bits;
     const int row_bits = count > OPAL_ALIAS_ROWS ? 32 : 24;
     const auto first_of_row = [&](std::uint64_t row) { return ((row << row_bits) + count - 1) / count; };
     std::vector<std::uint64_t> pairs(count);
     for (std::uint64_t row = 0; row < count; row++) {
         const std::uint64_t numbers = first_of_row(row + 1) - first_of_row(row);
-        const std::uint64_t least = weights[row] > 0;
-        const std::uint64_t kept = std::max(least, std::uint64_t(std::ceil(table.accept[row] * double(all))));
-        table.accept[row] = std::ldexp(double(kept), -accept_bits);
+        const double least = weights[row] > 0 ? std::ldexp(1.0, -accept_bits) : 0;
+        table.accept[row] = std::max(least, drawn_probability(table.accept[row]));
+        const auto kept = std::uint64_t(std::ldexp(table.accept[row], accept_bits));
         pairs[row] += numbers * kept;
         pairs[table.other[row]] += numbers * (all - kept);
     }
@@ -30,6 +31,8 @@ void state_what_is_drawn(std::span<const double> weights, AliasTable &table) {
 }
 
 } // namespace
+
+double drawn_probability(double p) { return std::ldexp(std::ceil(std::ldexp(p, accept_bits)), -accept_bits); }
 
 AliasTable build_alias_table(std::span<const double> weights) {
     const std::size_t count = weights.size();

@@ -8,6 +8,9 @@
 
 namespace opal {
 
+// p rounded up to the numbers that a random number of 24 bits may be below: u < p is drawn with this probability (cl/rng.cl).
+double drawn_probability(double p);
+
 // Draw row i = floor(n k1 2^-b) by b random bits k1, keep it if k2 2^-24 < accept[i] by 24 others, else take other[i]: index i then comes
 // with probability[i], exactly, for the pairs (k1, k2) that lead to it are counted.
 struct AliasTable {

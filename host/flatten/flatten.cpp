@@ -1,3 +1,4 @@
+#include "flatten/distribution.h"
 #include "flatten/emitters.h"
 #include "flatten/features.h"
 #include "flatten/geometry.h"
@@ -49,7 +50,7 @@ void fill_strategy(const SceneDescription &description, const Frame &frame, Sett
     settings.spp = description.spp;
     settings.max_depth = description.strategy.max_depth;
     settings.rr_depth = description.strategy.rr_depth;
-    settings.rr_prob = float(description.strategy.rr_prob);
+    settings.rr_prob = float(drawn_probability(description.strategy.rr_prob));
     settings.normals_signed = description.normals_signed;
     store((description.simple_light.position - frame.center) * frame.scale, settings.light_position);
     for (int i = 0; i < 3; i++)

@@ -14,8 +14,8 @@ const std::string first_only = "to_real(uints_pick(to_mask(path->depth == 1u), (
 const std::vector<Control> furnaces = {
     {{"emitter counted twice at the first hit", "integrators/path.cl", light_hit, "v3_scale(" + light_hit + ", " + first_only + ")"}, "furnace", check_furnace},
     {{"MIS weight left out where a light is hit", "lighting.cl", "path->direct ? (real)(1) : mis_weight(scene, ratio)", "(real)(1)"}, "furnace", check_furnace},
-    {{"roulette without division", "lighting.cl", "plays ? 1 / survives.probability : (real)(1)", "(real)(1)"}, "furnace", check_furnace},
-    {{"roulette by another probability than it divides by", "lighting.cl", "choose(survival, u)", "choose(survival, square(u))"}, "furnace", check_furnace},
+    {{"roulette without division", "lighting.cl", "plays ? 1 / survival : (real)(1)", "(real)(1)"}, "furnace", check_furnace},
+    {{"roulette by another probability than it divides by", "lighting.cl", "(u < survival)", "(u < square(survival))"}, "furnace", check_furnace},
     {{"one segment too many", "integrators/path.cl", "to_mask(path->depth < scene->settings->max_depth)", "to_mask(path->depth <= scene->settings->max_depth)"}, "furnace", check_furnace},
     {{"whitted's roulette without division", "integrators/whitted.cl", "v3_scale(path->throughput, 1 / survives.probability)", "path->throughput"}, "glass furnace", check_glass_furnace},
     {{"eta inverted in the scaling of radiance", "bsdfs/dielectric.cl", "(1 - fresnel) * square(boundary.inverse_eta)", "(1 - fresnel) * square(boundary.eta)"}, "glass furnace", check_glass_furnace},
@@ -49,6 +49,7 @@ const std::vector<Control> strategies = {
 };
 
 const std::vector<Control> choices = {
+    {{"roulette by the survival that was wished for", "lighting.cl", "drawn_probability(real_min(survival, (real)(ROULETTE_MOST)))", "real_min(survival, (real)(ROULETTE_MOST))"}, "counted", check_counted},
     {{"weights by the probability that was wished for", "rng.cl", "c.probability = c.first ? drawn : 1 - drawn;", "c.probability = c.first ? p : 1 - p;"}, "counted", check_counted},
     {{"one number more than the probability says", "rng.cl", "c.first = u < p;", "c.first = u < p + GRID_STEP;"}, "counted", check_counted},
     {{"rows of an alias table by fewer bits", "emitter.cl", "bits & 0xffffff00u", "bits & 0xfffffc00u"}, "counted", check_counted},
