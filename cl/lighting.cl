@@ -2,6 +2,7 @@
 typedef struct {
     Ray ray;
     v3 throughput, radiance;
+    v3 lost;         // what rounding took from radiance (add_radiance)
     real pdf;        // density of ray.d over solid angle where it was drawn
     real eta;        // product of the indices passed: throughput * eta^2 is free of refraction's scaling
     mask direct;     // no light sampling could have found what this ray hits: camera rays and discrete BSDFs
@@ -13,6 +14,18 @@ typedef struct {
 static uints path_dimension(const Path *path, uint dimension) { return 1u + (path->depth - 1u) * (uint)DIMS_A_SEGMENT + dimension; }
 static v2 path_draw(const Scene *scene, const Path *path, uint dimension) { return draw(scene, path->sampler, path_dimension(path, dimension)); }
 static u2 path_draw_bits(const Scene *scene, const Path *path, uint dimension) { return draw_bits(scene, path->sampler, path_dimension(path, dimension)); }
+
+// Adds light to the path's sum. Without roulette paths may be thousands of segments long, and the sum would lose 2e-5: what rounding takes
+// is then kept for the next addition (Kahan 1965). With roulette, noise is far above that, and a GPU has no registers to spare.
+static void add_radiance(const Scene *scene, Path *path, v3 light) {
+    if (!CHOSEN(scene, rr, off)) {
+        path->radiance = v3_add(path->radiance, light);
+        return;
+    }
+    v3 term = v3_add(light, path->lost), sum = v3_add(path->radiance, term);
+    path->lost = v3_sub(term, v3_sub(sum, path->radiance));
+    path->radiance = sum;
+}
 
 // Weight of a sample whose own density is 1 against another of density `ratio` (Veach 1997, eq. 9.8 and 9.10). As a ratio it
 // survives densities that are 0 or overflow.

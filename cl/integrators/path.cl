@@ -6,7 +6,7 @@ static mask path_step(const Scene *scene, Path *path, Hit hit, mask live) {
     Surface s = surface_at(scene, path->ray, hit, found);
 
     // Light that was hit
-    path->radiance = v3_add(path->radiance, v3_mul(path->throughput, emitted(scene, path, s, found)));
+    add_radiance(scene, path, v3_mul(path->throughput, emitted(scene, path, s, found)));
     found = found & to_mask(path->depth < scene->settings->max_depth);
     if (!ANY(found)) return found;
 
@@ -19,6 +19,6 @@ static mask path_step(const Scene *scene, Path *path, Hit hit, mask live) {
     found = scatter(scene, path, s, found);
     found = roulette(scene, path, found, u);
 
-    path->radiance = v3_add(path->radiance, unless_blocked(scene, light));
+    add_radiance(scene, path, unless_blocked(scene, light));
     return found;
 }

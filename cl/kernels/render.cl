@@ -107,6 +107,7 @@ static mask refill(const Scene *scene, Queue *queue, Starts *starts, Path *path,
     path->ray.tmax = start ? LOAD(real, to->tmax) : path->ray.tmax;
     path->throughput = v3_pick(start, v3_all((real)(1)), path->throughput);
     path->radiance = v3_pick(start, v3_all((real)(0)), path->radiance);
+    path->lost = v3_pick(start, v3_all((real)(0)), path->lost);
     path->eta = start ? (real)(1) : path->eta;
     path->pdf = start ? (real)(1) : path->pdf;
     path->direct = start | path->direct;
@@ -168,7 +169,7 @@ kernel void render(SCENE_PARAMETERS, global float *slots, uint first_item, uint 
     Queue queue = queue_of(settings, first_item + (uint)get_global_id(0), items, tile_width, tile_height, chunks, chunk_samples,
                            pass_first, pass_samples);
     Path path;
-    path.ray.o = path.ray.d = path.throughput = path.radiance = v3_all((real)(0));
+    path.ray.o = path.ray.d = path.throughput = path.radiance = path.lost = v3_all((real)(0));
     path.ray.tmin = path.ray.tmax = path.pdf = path.eta = 0;
     path.depth = path.sampler.pixel = path.sampler.sample = path.sampler.key0 = path.sampler.key1 = (uints)(0);
     path.direct = NO_LANES;

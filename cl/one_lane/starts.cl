@@ -18,7 +18,7 @@ static mask start_next(const Scene *scene, Queue *queue, NoStarts *starts, Path 
     path->sampler = sampler_start(y * scene->settings->width + x, sample, scene->settings->seed);
     path->ray = camera_ray(scene, x, y, film_offset(scene, path->sampler));
     path->throughput = v3_all(1);
-    path->radiance = v3_all(0);
+    path->radiance = path->lost = v3_all(0);
     path->eta = path->pdf = 1;
     path->direct = ALL_LANES;
     path->depth = 1;

@@ -50,6 +50,7 @@ const std::vector<Control> strategies = {
 
 const std::vector<Control> choices = {
     {{"roulette by the survival that was wished for", "lighting.cl", "drawn_probability(real_min(survival, (real)(ROULETTE_MOST)))", "real_min(survival, (real)(ROULETTE_MOST))"}, "counted", check_counted},
+    {{"what rounding takes from a path's sum is forgotten", "lighting.cl", "path->lost = v3_sub(term, v3_sub(sum, path->radiance));", ""}, "counted", check_counted},
     {{"weights by the probability that was wished for", "rng.cl", "c.probability = c.first ? drawn : 1 - drawn;", "c.probability = c.first ? p : 1 - p;"}, "counted", check_counted},
     {{"one number more than the probability says", "rng.cl", "c.first = u < p;", "c.first = u < p + GRID_STEP;"}, "counted", check_counted},
     {{"rows of an alias table by fewer bits", "emitter.cl", "bits & 0xffffff00u", "bits & 0xfffffc00u"}, "counted", check_counted},

@@ -105,6 +105,18 @@ Findings check_counted(const Sources &sources, unsigned) {
     for (const char *choice : {"area", "uniform"})
         findings.push_back(counted(fmt::format("one triangle of 100 003 by {}", choice), one_triangle_of(100003),
                                    {{"lighting", "emitter"}, {"triangle-choice", choice}}, one_triangle_truth(), sources));
+    // No choice at all: every path is the series 1 + a + a^2 + ..., in one sum.
+    for (double albedo : {0.9, 0.99, 0.999}) {
+        SceneDescription scene = furnace(albedo, 1);
+        scene.meshes[0].bsdf.record.u.diffuse.use_cosine = 1;
+        Shot shot;
+        shot.sources = &sources;
+        scene.camera.width = scene.camera.height = 2;
+        const double truth = 1 / (1 - double(float(albedo)));
+        const double got = sample_of(render(with(scene, {{"lighting", "bsdf"}, {"rr", "off"}}), 4, 0, shot), 0).mean;
+        findings.push_back(exact(fmt::format("furnace of albedo {}: {:.9g}, not {:.9g}, off by {:.2g}", albedo, got, truth, got / truth - 1),
+                                 std::abs(got / truth - 1) <= counted_limit));
+    }
     return findings;
 }
 
