@@ -238,7 +238,10 @@ Findings check_refraction(const Sources &sources, unsigned) {
             const Vec3 wi = normalize({std::sin(degrees * pi / 180) * 0.6, std::sin(degrees * pi / 180) * 0.8, std::cos(degrees * pi / 180)});
             const Planes drawn = probe.bsdf_sample(0, wi, numbers);
             const Vec3 back = drawn.vec3(BSDF_WO_X, 0), through = drawn.vec3(BSDF_WO_X, 1);
-            straight_wrong += length(back - Vec3{-wi.x, -wi.y, wi.z}) > 1e-6 || drawn.at(BSDF_WEIGHT_R, 0) != 1;
+            // What is reflected weighs its reflectance over the probability that it is drawn with: 1 but for a random number's 2^-24.
+            const double reflectance = fresnel(std::abs(wi.z), wi.z > 0 ? 1 : 1.5, wi.z > 0 ? 1.5 : 1);
+            const double weight = drawn.at(BSDF_WEIGHT_R, 0);
+            straight_wrong += length(back - Vec3{-wi.x, -wi.y, wi.z}) > 1e-6 || weight > 1 || weight < 1 - 0x1p-24 / reflectance - 1e-7;
             const double eta = wi.z > 0 ? 1.5 : 1 / 1.5, sine2 = (wi.x * wi.x + wi.y * wi.y) / (eta * eta);
             if (sine2 >= 1)
                 continue;
