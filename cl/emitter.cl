@@ -66,9 +66,10 @@ static v3 emitter_radiance(const Scene *scene, uints id) { return GATHER_V3(scen
 
 // Density over area with which light sampling finds a point on a triangle of an area light, all choices included.
 static real emitter_area_pdf(const Scene *scene, uints id, uints triangle, mask live) {
-    real pdf = GATHER(real, scene->emitters, id, .inverse_area);
+    real pdf = 0;
+    if (EMITTER_KINDS > OPAL_HAS_emitter_mesh) pdf = GATHER(real, scene->emitters, id, .inverse_area);
     if (OPAL_HAS_emitter_mesh) {
-        mask mesh = live & to_mask(GATHER(uints, scene->emitters, id, .kind) == EMITTER_mesh);
+        mask mesh = EMITTER_KINDS == 1 ? live : live & to_mask(GATHER(uints, scene->emitters, id, .kind) == EMITTER_mesh);
         uints row = GATHER(uints, scene->emitters, id, .first) + (triangle - GATHER(uints, scene->emitters, id, .first_triangle));
         pdf = mesh ? 1 / GATHER(real, scene->light_triangles, uints_pick(mesh, row, (uints)(0)), .area) : pdf;
     }
