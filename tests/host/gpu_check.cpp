@@ -13,7 +13,8 @@ const std::string gpu_check = OPAL_SOURCE_DIR "/scripts/gpu_check --opal " OPAL_
 
 TEST_CASE("gpu_check says that there is no GPU, and ends with 3", "[gpu_check]") {
     const ScratchFolder vendors; // no driver
-    const Outcome outcome = run_shell("OCL_ICD_VENDORS=" + vendors.path().string() + " " + gpu_check);
+    const Outcome outcome =
+        run_shell("OCL_ICD_FILENAMES= OCL_ICD_VENDORS=" + vendors.path().string() + " " + gpu_check);
     INFO(outcome.out << outcome.err);
     CHECK(outcome.exit_code == 3);
     CHECK_THAT(outcome.err, Catch::StartsWith("gpu_check: no GPU: no OpenCL device \"gpu\"") &&
