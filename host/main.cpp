@@ -70,7 +70,8 @@ std::vector<std::string> arguments(int argc, char **argv) {
 
 int run(int argc, char **argv) {
     CLI::App app("Opal " OPAL_VERSION ": a portable, physically based path tracer in OpenCL.\n"
-                 "`opal SCENE.xml` is `opal render SCENE.xml`.", "opal");
+                 "`opal SCENE.xml` is `opal render SCENE.xml`.",
+                 "opal");
     app.set_version_flag("--version", "opal " OPAL_VERSION);
     app.set_help_flag("-h,--help", "Print this and exit");
     app.require_subcommand(1);

@@ -9,7 +9,9 @@ namespace {
 
 std::string kept;
 
-bool is_plain(unsigned char c) { return std::isalnum(c) || std::string("_-./=,:+@%").find(char(c)) != std::string::npos; }
+bool is_plain(unsigned char c) {
+    return std::isalnum(c) || std::string("_-./=,:+@%").find(char(c)) != std::string::npos;
+}
 
 } // namespace
 

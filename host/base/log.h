@@ -10,15 +10,15 @@
 
 namespace opal {
 
-void set_quiet(bool quiet);             // --quiet silences info, never warnings
+void set_quiet(bool quiet); // --quiet silences info, never warnings
 bool is_quiet();
 void info(const std::string &line);
-void set_verbose(bool verbose);         // --verbose
-void detail(const std::string &text);   // said only where --verbose asks for it
-void warn(const std::string &line);     // prints "warning: ..."
+void set_verbose(bool verbose);       // --verbose
+void detail(const std::string &text); // said only where --verbose asks for it
+void warn(const std::string &line);   // prints "warning: ..."
 const std::vector<std::string> &warnings();
-void tell_error(const char *line);      // prints "error: ..."; for what ends a process
-void show(const std::string &text);     // to stderr as it is: a progress bar
+void tell_error(const char *line);  // prints "error: ..."; for what ends a process
+void show(const std::string &text); // to stderr as it is: a progress bar
 
 // A result, to stdout at once.
 void print_text(const std::string &text);

@@ -15,9 +15,7 @@ inline Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}
 inline Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 inline Vec3 operator*(Vec3 a, double s) { return {a.x * s, a.y * s, a.z * s}; }
 inline double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline Vec3 cross(Vec3 a, Vec3 b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
+inline Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 inline double length(Vec3 a) { return std::hypot(a.x, a.y, a.z); }
 inline Vec3 normalize(Vec3 a) { return a * (1 / length(a)); }
 
@@ -25,10 +23,10 @@ inline Vec3 normalize(Vec3 a) { return a * (1 / length(a)); }
 struct Transform {
     std::array<std::array<double, 4>, 4> rows = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
 
-    Vec3 point(Vec3 p) const;              // divides by w
+    Vec3 point(Vec3 p) const; // divides by w
     Vec3 vector(Vec3 v) const;
-    Vec3 normal(Vec3 n) const;             // inverse transpose, not normalised
-    double determinant() const;            // of the upper 3x3
+    Vec3 normal(Vec3 n) const;  // inverse transpose, not normalised
+    double determinant() const; // of the upper 3x3
     static Transform translate(Vec3 t);
     static Transform scale(Vec3 s);
     static Transform rotate(Vec3 axis, double degrees);

@@ -48,7 +48,8 @@ ChildProcess::ChildProcess(const std::filesystem::path &binary, const std::vecto
 }
 
 ChildProcess::ChildProcess(ChildProcess &&other) noexcept
-    : process_(std::exchange(other.process_, -1)), pipe_(std::exchange(other.pipe_, -1)), said_(std::move(other.said_)) {}
+    : process_(std::exchange(other.process_, -1)), pipe_(std::exchange(other.pipe_, -1)),
+      said_(std::move(other.said_)) {}
 
 ChildProcess::~ChildProcess() {
     if (process_ != -1)

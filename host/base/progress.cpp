@@ -40,7 +40,8 @@ std::string count_text(double count) {
     return fmt::format("{:.3g}{}", count, units[unit]);
 }
 
-std::string progress_line(const std::string &what, const std::string &unit, double done, double total, double seconds, bool bar) {
+std::string progress_line(const std::string &what, const std::string &unit, double done, double total, double seconds,
+                          bool bar) {
     const double share = total > 0 ? std::clamp(done / total, 0.0, 1.0) : 1;
     std::string line = fmt::format("{} {:3.0f} %", what, std::floor(100 * share));
     if (bar) {
@@ -49,7 +50,8 @@ std::string progress_line(const std::string &what, const std::string &unit, doub
         line += fmt::format(" [{:<{}}]", std::string(static_cast<size_t>(filled), '#'), width);
     }
     if (done > 0 && seconds > 0)
-        line += fmt::format("  {} {}/s  {} left", count_text(done / seconds), unit, duration_text(seconds * (total - done) / done));
+        line += fmt::format("  {} {}/s  {} left", count_text(done / seconds), unit,
+                            duration_text(seconds * (total - done) / done));
     return line;
 }
 

@@ -1,4 +1,5 @@
-// What a long computation says while it runs: a bar on a terminal, a line every few seconds elsewhere, nothing with --quiet.
+// What a long computation says while it runs: a bar on a terminal, a line every few seconds elsewhere, nothing with
+// --quiet.
 #pragma once
 
 #include <chrono>
@@ -24,8 +25,10 @@ private:
     Clock::time_point start_, said_;
 };
 
-// "render  45 % [#########           ]  3.21 M samples/s  12 s left"; seconds: since the start; bar: whether to draw one.
-std::string progress_line(const std::string &what, const std::string &unit, double done, double total, double seconds, bool bar);
+// "render  45 % [#########           ]  3.21 M samples/s  12 s left"; seconds: since the start; bar: whether to draw
+// one.
+std::string progress_line(const std::string &what, const std::string &unit, double done, double total, double seconds,
+                          bool bar);
 
 // "0.8 s", "12 s", "3 min 20 s", "2 h 5 min"
 std::string duration_text(double seconds);

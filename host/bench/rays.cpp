@@ -1,7 +1,7 @@
 #include "bench/rays.h"
 
-#include "flatten/box.h"
-#include "render/scene_buffers.h"
+#include "bvh/box.h"
+#include "device/scene_buffers.h"
 
 #include <algorithm>
 #include <bit>
@@ -53,7 +53,8 @@ std::vector<std::array<float, 9>> triangles_of(const FlatScene &scene) {
 
 RayBench::RayBench(const Device &device, const FlatScene &scene, const BuildOptions &build, const Sources &sources)
     : device_(device), scene_(scene), build_(build), sources_(sources),
-      program_(build_program(device, program_text(scene.features, with_kernels(build, false), sources), build, &compile_seconds_)),
+      program_(build_program(device, program_text(scene.features, with_kernels(build, false), sources), build,
+                             &compile_seconds_)),
       buffers_(upload_scene(device, scene)) {}
 
 cl::Program &RayBench::counting_program() {
@@ -129,7 +130,8 @@ RayBench::Seconds RayBench::trace(cl::Program &program, Batch &batch) {
         device_.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(batch.items),
                                            cl::NDRange(group_size(device_.info)), nullptr, &event);
         event.wait();
-        return Seconds{1e-9 * double(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() - event.getProfilingInfo<CL_PROFILING_COMMAND_START>()),
+        return Seconds{1e-9 * double(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
+                                     event.getProfilingInfo<CL_PROFILING_COMMAND_START>()),
                        double(std::clock() - before) / CLOCKS_PER_SEC};
     });
 }
@@ -140,7 +142,8 @@ RayTimes RayBench::time(const RaySet &set, int runs) {
     batch.kernel = set.kind == RAYS_shadow ? "any_hits" : "closest_hits";
     batch.count = count;
     batch.stride = round_up(count, 16);
-    // One shape for all sets of a CPU, as drivers compile a kernel anew for each; about a thousand rays an item keep its price small.
+    // One shape for all sets of a CPU, as drivers compile a kernel anew for each; about a thousand rays an item keep
+    // its price small.
     const bool gpu = device_.info.type == "gpu";
     batch.rays_an_item = gpu ? lanes : round_up((count + 1023) / 1024, lanes);
     batch.items = gpu ? round_up((count + lanes - 1) / lanes, group_size(device_.info)) : 1024;
@@ -166,7 +169,8 @@ RayTimes RayBench::time(const RaySet &set, int runs) {
     const std::vector<float> hits = read_buffer<float>(device_, batch.hits, TRACE_HIT_PLANES * batch.stride);
     const auto value = [&](size_t plane, size_t i) { return hits[plane * batch.stride + i]; };
     for (size_t i = 0; i < count; i++) {
-        times.hits.push_back({value(TRACE_T, i), value(TRACE_U, i), value(TRACE_V, i), std::bit_cast<int>(value(TRACE_TRIANGLE, i))});
+        times.hits.push_back(
+            {value(TRACE_T, i), value(TRACE_U, i), value(TRACE_V, i), std::bit_cast<int>(value(TRACE_TRIANGLE, i))});
         times.hit_share += times.hits.back().triangle >= 0 ? 1.0 / double(count) : 0;
     }
 

@@ -1,5 +1,5 @@
-// Rays alone: what `opal bench rays` times. The device makes rays as a render sends them (cl/kernels/rays.cl) and traces
-// them with the traversal that renders.
+// Rays alone: what `opal bench rays` times. The device makes rays as a render sends them (cl/kernels/rays.cl) and
+// traces them with the traversal that renders.
 #pragma once
 
 #include "device/buffers.h"
@@ -29,7 +29,8 @@ struct RayHit {
 };
 
 struct RayTimes {
-    Spread mrays_per_second, mrays_per_cpu_second; // the latter of this process's time on all cores: steady where others work, too
+    Spread mrays_per_second,
+        mrays_per_cpu_second; // the latter of this process's time on all cores: steady where others work, too
     std::vector<RayHit> hits;
     double hit_share = 0;
     double node_tests = 0, triangle_tests = 0; // a ray: nodes of 8 children; places of blocks, and listed triangles

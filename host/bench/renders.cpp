@@ -1,14 +1,16 @@
 #include "bench/renders.h"
 
-#include "flatten/collapse.h"
+#include "bvh/collapse.h"
 
 #include <algorithm>
 #include <ctime>
 
 namespace opal {
 
-RenderBench::RenderBench(const Device &device, const FlatScene &scene, const BuildOptions &build, const Sources &sources, double seconds, int rounds)
-    : device_(device), scene_(scene), build_(build), sources_(sources), base_(renderer_of(scene, build)), rounds_(rounds) {
+RenderBench::RenderBench(const Device &device, const FlatScene &scene, const BuildOptions &build,
+                         const Sources &sources, double seconds, int rounds)
+    : device_(device), scene_(scene), build_(build), sources_(sources), base_(renderer_of(scene, build)),
+      rounds_(rounds) {
     for (double share : {0.0, 0.1, 1.0}) // pilots: one sample, one again now that all is warm, a tenth of the time
         spp_ = std::max(1u, unsigned(share * seconds * spp_ / render(base_, 1000).device));
 }
@@ -48,7 +50,8 @@ PathCounts RenderBench::counts() const {
     BuildOptions counting = build_;
     counting.count_tests = true;
     Renderer renderer = renderer_of(scene_, counting);
-    const unsigned spp = std::min(spp_, 64u); // as many as keep a work-item's lanes full as in the renders that are timed
+    const unsigned spp =
+        std::min(spp_, 64u); // as many as keep a work-item's lanes full as in the renders that are timed
     renderer.render(spp);
     const Film film = renderer.film();
     double sum[3] = {};

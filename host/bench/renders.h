@@ -18,15 +18,16 @@ struct PathCounts {
 
 // A variant of the kernel beside the base, A B A B.
 struct Race {
-    PathRates rates;        // of the variant
-    Spread time;            // its time over the base's: by CPU time on a CPU device, else by the device's
+    PathRates rates; // of the variant
+    Spread time;     // its time over the base's: by CPU time on a CPU device, else by the device's
     double compile_seconds = 0;
 };
 
 class RenderBench {
 public:
     // Renders take about `seconds` each, `rounds` times. References must outlive this.
-    RenderBench(const Device &device, const FlatScene &scene, const BuildOptions &build, const Sources &sources, double seconds, int rounds);
+    RenderBench(const Device &device, const FlatScene &scene, const BuildOptions &build, const Sources &sources,
+                double seconds, int rounds);
 
     PathRates rates();
     PathCounts counts() const;

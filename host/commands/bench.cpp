@@ -81,14 +81,18 @@ void write_dumps(const RayOptions &o, const FlatScene &flat, const RaySet &set, 
         write_safely(o.dump_hits, bytes_of(times.hits));
     if (!o.dump_triangles.empty()) {
         const std::vector<std::array<float, 9>> triangles = triangles_of(flat);
-        write_safely(o.dump_triangles, bytes_of(std::vector<uint32_t>{uint32_t(triangles.size())}) + bytes_of(triangles));
+        write_safely(o.dump_triangles,
+                     bytes_of(std::vector<uint32_t>{uint32_t(triangles.size())}) + bytes_of(triangles));
     }
 }
 
 void check_ray_options(const RayOptions &o) {
-    for (const auto &[flag, file] : {std::pair("--dump-rays", &o.dump_rays), {"--dump-hits", &o.dump_hits}, {"--dump-triangles", &o.dump_triangles}})
+    for (const auto &[flag, file] : {std::pair("--dump-rays", &o.dump_rays),
+                                     {"--dump-hits", &o.dump_hits},
+                                     {"--dump-triangles", &o.dump_triangles}})
         if (!file->empty() && o.kind.empty())
-            throw Error(fmt::format("{} is of one kind of rays: name it with --kind; available: {}", flag, joined(names_of(ray_kinds()))));
+            throw Error(fmt::format("{} is of one kind of rays: name it with --kind; available: {}", flag,
+                                    joined(names_of(ray_kinds()))));
     if (!o.kind.empty())
         find_row(ray_kinds(), "kind of rays", o.kind);
     for (const std::string *file : {&o.json, &o.dump_rays, &o.dump_hits, &o.dump_triangles})
@@ -112,7 +116,8 @@ Place place_of(const std::string &device, const SceneDescription &scene) {
 int run_rays(const RayOptions &o) {
     check_ray_options(o);
     SceneDescription scene = load_scene(o.scene);
-    scene.strategy[AXIS_integrator] = CHOICE_integrator_path; // whatever the image estimates: shadow rays go to the lights
+    scene.strategy[AXIS_integrator] =
+        CHOICE_integrator_path; // whatever the image estimates: shadow rays go to the lights
     scene.strategy[AXIS_lighting] = CHOICE_lighting_mis;
     scene.strategy[AXIS_sampler] = CHOICE_sampler_independent;
     const auto [pick, build] = place_of(o.device, scene);
@@ -122,17 +127,21 @@ int run_rays(const RayOptions &o) {
     RayBench bench(device, flat, build, sources);
 
     json report = scene_json(scene, flat, pick.info, build.lanes);
-    info(fmt::format("scene   {}: {} triangles, {} of them listed beside the tree", scene.file.string(), flat.triangles.size(), flat.listed_triangles));
-    info(fmt::format("device  {} (driver {}; {}), {} lanes", pick.info.name, pick.info.driver, pick.reason, build.lanes));
-    info(fmt::format("tree    {} nodes, {} blocks, {} ({:.1f} bytes a triangle), SAH cost {:.4g}, built in {:.3g} s", flat.nodes.size(), flat.blocks.size(),
-                     bytes_text(report["hierarchy_bytes"].get<size_t>()), report["bytes_per_triangle"].get<double>(), flat.sah_cost, flat.bvh_seconds));
+    info(fmt::format("scene   {}: {} triangles, {} of them listed beside the tree", scene.file.string(),
+                     flat.triangles.size(), flat.listed_triangles));
+    info(fmt::format("device  {} (driver {}; {}), {} lanes", pick.info.name, pick.info.driver, pick.reason,
+                     build.lanes));
+    info(fmt::format("tree    {} nodes, {} blocks, {} ({:.1f} bytes a triangle), SAH cost {:.4g}, built in {:.3g} s",
+                     flat.nodes.size(), flat.blocks.size(), bytes_text(report["hierarchy_bytes"].get<size_t>()),
+                     report["bytes_per_triangle"].get<double>(), flat.sah_cost, flat.bvh_seconds));
     for (int kind = 0; kind < RAYS_KINDS; kind++) {
         const std::string &name = ray_kinds()[size_t(kind)].name;
         if (!o.kind.empty() && o.kind != name)
             continue;
         const RaySet set = bench.generate(kind, o.rays, o.seed);
         if (set.rays.empty()) {
-            const std::string what = fmt::format("{}: no {} rays: the camera sees nothing that they could start from", scene.file.string(), name);
+            const std::string what = fmt::format("{}: no {} rays: the camera sees nothing that they could start from",
+                                                 scene.file.string(), name);
             if (!o.kind.empty())
                 throw Error(what);
             warn(what);
@@ -166,20 +175,29 @@ RunCommand setup_rays(CLI::App &app) {
     for (const RayKind &kind : ray_kinds())
         kinds += fmt::format("\n  {}: {}", kind.name, kind.help);
     app.add_option("--kind", o->kind, kinds)->type_name("KIND");
-    app.add_option("--rays", o->rays, "Rays of a kind that are tried, about; those that start nowhere are left out")->check(CLI::Range(1u, 1u << 26))->capture_default_str();
-    app.add_option("--runs", o->runs, "Times that all rays are traced; the median is told")->check(CLI::Range(1, 10000))->capture_default_str();
+    app.add_option("--rays", o->rays, "Rays of a kind that are tried, about; those that start nowhere are left out")
+        ->check(CLI::Range(1u, 1u << 26))
+        ->capture_default_str();
+    app.add_option("--runs", o->runs, "Times that all rays are traced; the median is told")
+        ->check(CLI::Range(1, 10000))
+        ->capture_default_str();
     app.add_option("--seed", o->seed, "Of the rays")->capture_default_str();
-    app.add_option("--json", o->json, "File for the figures; mrays_per_second is there for one --kind, and in `kinds` for each")->type_name("FILE");
+    app.add_option("--json", o->json,
+                   "File for the figures; mrays_per_second is there for one --kind, and in `kinds` for each")
+        ->type_name("FILE");
     app.add_option("--dump-rays", o->dump_rays,
-                   "With --kind: the rays, little-endian float32 ox oy oz tmin dx dy dz tmax each, in the units of --dump-triangles")
+                   "With --kind: the rays, little-endian float32 ox oy oz tmin dx dy dz tmax each, in the units of "
+                   "--dump-triangles")
         ->type_name("FILE");
     app.add_option("--dump-hits", o->dump_hits,
                    "With --kind: the answers, float32 t u v and int32 triangle each, -1 for none\n"
                    "  shadow rays: triangle is 0 (blocked) or -1, t u v are 0")
         ->type_name("FILE");
-    app.add_option("--dump-triangles", o->dump_triangles,
-                   "With --kind: uint32 count, then 9 float32 a triangle, in the order of the hits' indices; parallelograms\n"
-                   "  are two triangles each, degenerate triangles are dropped; flattened = (world - center) * scale of the JSON")
+    app.add_option(
+           "--dump-triangles", o->dump_triangles,
+           "With --kind: uint32 count, then 9 float32 a triangle, in the order of the hits' indices; parallelograms\n"
+           "  are two triangles each, degenerate triangles are dropped; flattened = (world - center) * scale of the "
+           "JSON")
         ->type_name("FILE");
     return [o] { return run_rays(*o); };
 }
@@ -220,7 +238,8 @@ int run_renders(const RenderBenchOptions &o) {
     RenderBench bench(device, flat, build, sources, o.seconds, o.rounds);
     const double cold = bench.compile_seconds(fresh), warm = bench.compile_seconds(fresh);
 
-    info(fmt::format("device  {} (driver {}; {}), {} lanes", pick.info.name, pick.info.driver, pick.reason, build.lanes));
+    info(fmt::format("device  {} (driver {}; {}), {} lanes", pick.info.name, pick.info.driver, pick.reason,
+                     build.lanes));
     const PathRates rates = bench.rates();
     const PathCounts counts = bench.counts();
     const double rays = counts.rays + counts.shadow_rays;
@@ -258,7 +277,8 @@ int run_renders(const RenderBenchOptions &o) {
             continue; // minutes of compilation for widths that a GPU never renders with
         BuildOptions other = build;
         other.lanes = lanes;
-        report["widths"][std::to_string(lanes)] = told(fmt::format("{} lanes", lanes), bench.race(flatten(scene, lanes), other));
+        report["widths"][std::to_string(lanes)] =
+            told(fmt::format("{} lanes", lanes), bench.race(flatten(scene, lanes), other));
     }
     SceneDescription anything = scene;
     anything.strategy.specialise = false;
@@ -272,8 +292,11 @@ RunCommand setup_renders(CLI::App &app) {
     auto o = std::make_shared<RenderBenchOptions>();
     add_scene_options(app, o->scene);
     add_device_option(app, o->device);
-    app.add_option("--seconds", o->seconds, "Of each render, about")->check(CLI::Range(0.001, 100.0))->capture_default_str();
-    app.add_option("--rounds", o->rounds, "Times that each is rendered, in turn with the kernel that `opal render` takes; the median is told")
+    app.add_option("--seconds", o->seconds, "Of each render, about")
+        ->check(CLI::Range(0.001, 100.0))
+        ->capture_default_str();
+    app.add_option("--rounds", o->rounds,
+                   "Times that each is rendered, in turn with the kernel that `opal render` takes; the median is told")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     app.add_option("--json", o->json, "File for the figures")->type_name("FILE");
@@ -287,7 +310,8 @@ RunCommand setup_bench(CLI::App &app) {
     auto runs = std::make_shared<std::map<const CLI::App *, RunCommand>>();
     CLI::App *rays = app.add_subcommand("rays", "Trace camera, bounce and shadow rays of a scene, and nothing else");
     (*runs)[rays] = setup_rays(*rays);
-    CLI::App *renders = app.add_subcommand("render", "Render the scene: paths and rays a second, where time goes, other widths, the general kernel");
+    CLI::App *renders = app.add_subcommand(
+        "render", "Render the scene: paths and rays a second, where time goes, other widths, the general kernel");
     (*runs)[renders] = setup_renders(*renders);
     return [&app, runs] { return runs->at(app.get_subcommands().front())(); };
 }

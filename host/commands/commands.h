@@ -15,7 +15,7 @@ RunCommand setup_compare(CLI::App &app);
 RunCommand setup_devices(CLI::App &app);
 RunCommand setup_extremes(CLI::App &app);
 RunCommand setup_inspect(CLI::App &app);
-RunCommand setup_probe_platform(CLI::App &app); // hidden; see device/probe.h
+RunCommand setup_probe_platform(CLI::App &app); // hidden; see device/ask_driver.h
 RunCommand setup_render(CLI::App &app);
 RunCommand setup_sweep(CLI::App &app);
 RunCommand setup_selftest(CLI::App &app);

@@ -3,7 +3,7 @@
 #include "base/json.h"
 #include "base/log.h"
 #include "commands/commands.h"
-#include "commands/evidence.h"
+#include "compare/evidence.h"
 #include "image/metrics.h"
 
 #include <fmt/format.h>
@@ -34,8 +34,8 @@ std::string missing_layers(const Image &a, const Image &b) {
 
 void check_comparable(const Options &o, const Image &image, const Image &reference) {
     if (image.width != reference.width || image.height != reference.height)
-        throw Error(fmt::format("the sizes differ: {} has {} x {} pixels, {} has {} x {}", o.image, image.width, image.height,
-                                o.reference, reference.width, reference.height));
+        throw Error(fmt::format("the sizes differ: {} has {} x {} pixels, {} has {} x {}", o.image, image.width,
+                                image.height, o.reference, reference.width, reference.height));
     for (const auto &[file, other, missing] : {std::tuple{o.reference, o.image, missing_layers(image, reference)},
                                                std::tuple{o.image, o.reference, missing_layers(reference, image)}})
         if (!missing.empty())
@@ -65,7 +65,8 @@ stats::Estimate estimated(const Image &image) {
     return estimate_of(image, samples, samples > 0 ? samples - 1 : std::numeric_limits<double>::infinity());
 }
 
-void write_map(const std::filesystem::path &exr, const Image &image, const Image &reference, const stats::TileTest *test) {
+void write_map(const std::filesystem::path &exr, const Image &image, const Image &reference,
+               const stats::TileTest *test) {
     Image d = difference(image, reference);
     const Image colours = difference_colours(d);
     if (test)
@@ -76,24 +77,43 @@ void write_map(const std::filesystem::path &exr, const Image &image, const Image
 }
 
 nlohmann::json json_of(const Metrics &m) {
-    return {{"mse", m.mse}, {"rmse", m.rmse}, {"rel_mse", m.rel_mse},
-            {"rel_mse_denominator", "reference^2 + rel_mse_floor"}, {"rel_mse_floor", m.rel_mse_floor},
-            {"mae", m.mae}, {"smape", m.smape}, {"smape_denominator", "(|image| + |reference|) / 2"},
+    return {{"mse", m.mse},
+            {"rmse", m.rmse},
+            {"rel_mse", m.rel_mse},
+            {"rel_mse_denominator", "reference^2 + rel_mse_floor"},
+            {"rel_mse_floor", m.rel_mse_floor},
+            {"mae", m.mae},
+            {"smape", m.smape},
+            {"smape_denominator", "(|image| + |reference|) / 2"},
             {"psnr_db", m.psnr}, // infinite (equal images) is written as null
-            {"mean_difference", m.mean_difference}, {"max_difference", m.max_difference},
-            {"max_x", m.max_x}, {"max_y", m.max_y}, {"invalid_pixels", m.invalid}};
+            {"mean_difference", m.mean_difference},
+            {"max_difference", m.max_difference},
+            {"max_x", m.max_x},
+            {"max_y", m.max_y},
+            {"invalid_pixels", m.invalid}};
 }
 
 nlohmann::json json_of(const stats::TileTest &t, double significance) {
-    nlohmann::json j = {{"p_value", t.p_value}, {"significance", significance}, {"differ", t.rejected(significance)},
-                        {"tile_size", t.size}, {"columns", t.columns}, {"rows", t.rows}, {"z", t.z}};
+    nlohmann::json j = {{"p_value", t.p_value},
+                        {"significance", significance},
+                        {"differ", t.rejected(significance)},
+                        {"tile_size", t.size},
+                        {"columns", t.columns},
+                        {"rows", t.rows},
+                        {"z", t.z}};
     for (const stats::TestResult &whole : t.whole)
         j["whole_image_p"].push_back(whole.p_value);
     const stats::Region &r = t.region;
     if (r.tiles > 0)
-        j["region"] = {{"channel", std::string(1, "RGB"[r.channel])}, {"tiles", r.tiles}, {"x", r.box.x}, {"y", r.box.y},
-                       {"width", r.box.width}, {"height", r.box.height}, {"z", r.statistic},
-                       {"mean_image", r.mean_a}, {"mean_reference", r.mean_b}};
+        j["region"] = {{"channel", std::string(1, "RGB"[r.channel])},
+                       {"tiles", r.tiles},
+                       {"x", r.box.x},
+                       {"y", r.box.y},
+                       {"width", r.box.width},
+                       {"height", r.box.height},
+                       {"z", r.statistic},
+                       {"mean_image", r.mean_a},
+                       {"mean_reference", r.mean_b}};
     return j;
 }
 
@@ -103,7 +123,8 @@ void tell(const Metrics &m) {
     };
     line("MSE", m.mse, "mean of d^2, d = A - B, over pixels and R, G, B");
     line("RMSE", m.rmse, "its root");
-    line("relMSE", m.rel_mse, fmt::format("mean of d^2 / (B^2 + {:.3g}), the floor being (1 % of B's mean)^2", m.rel_mse_floor));
+    line("relMSE", m.rel_mse,
+         fmt::format("mean of d^2 / (B^2 + {:.3g}), the floor being (1 % of B's mean)^2", m.rel_mse_floor));
     line("MAE", m.mae, "mean of |d|");
     line("SMAPE", m.smape, "mean of |d| / ((|A| + |B|) / 2), from 0 to 2");
     line("PSNR", m.psnr, "dB, of the images as the PNGs show them (sRGB curve, clamped to 0 to 1), peak 1");
@@ -167,8 +188,9 @@ RunCommand setup_compare(CLI::App &app) {
     auto o = std::make_shared<Options>();
     app.add_option("A.exr", o->image, "The image")->required()->type_name("");
     app.add_option("B.exr", o->reference, "The reference")->required()->type_name("");
-    app.add_option("-o,--output", o->out, "EXR for the difference A - B (and z.R, z.G, z.B of its tiles); a PNG goes beside it, "
-                                          "red where A is brighter, blue where B is");
+    app.add_option("-o,--output", o->out,
+                   "EXR for the difference A - B (and z.R, z.G, z.B of its tiles); a PNG goes beside it, "
+                   "red where A is brighter, blue where B is");
     app.add_option("--json", o->json, "File for the figures");
     app.add_option("--significance", o->significance, "Level of the test that both have one mean")
         ->check(CLI::Range(1e-12, 0.5))

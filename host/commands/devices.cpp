@@ -18,22 +18,26 @@ struct DevicesOptions {
     double time_limit = 20;
 };
 
-std::string memory_text(unsigned long long bytes) { return fmt::format("{:.1f} GiB", static_cast<double>(bytes) / (1 << 30)); }
+std::string memory_text(unsigned long long bytes) {
+    return fmt::format("{:.1f} GiB", static_cast<double>(bytes) / (1 << 30));
+}
 
 std::string lanes_text(int lanes) { return fmt::format("{} lane{}", lanes, lanes == 1 ? "" : "s"); }
 
 // What a render makes use of.
 std::string used_of(const DeviceInfo &d) {
-    const std::string doubles = d.fp64 ? fmt::format(", double ({})", lanes_text(lanes_for(d, 0, MathMode::double_precision))) : "";
-    return fmt::format("{}, work-groups of {}, buffers of at most {}; --math precise, fast{}", lanes_text(d.native_lanes), group_size(d),
-                       bytes_text(d.max_allocation), doubles);
+    const std::string doubles =
+        d.fp64 ? fmt::format(", double ({})", lanes_text(lanes_for(d, 0, MathMode::double_precision))) : "";
+    return fmt::format("{}, work-groups of {}, buffers of at most {}; --math precise, fast{}",
+                       lanes_text(d.native_lanes), group_size(d), bytes_text(d.max_allocation), doubles);
 }
 
 // What the device has and no kernel takes, and what it lacks.
 std::string unused_of(const DeviceInfo &d) {
     std::string text = "local memory";
     if (d.native_lanes == 1 && d.vector_width > 1)
-        text += fmt::format("; vectors of {} floats, as {}", d.vector_width, d.type == "gpu" ? "a GPU runs a path a work-item" : "4 is the least");
+        text += fmt::format("; vectors of {} floats, as {}", d.vector_width,
+                            d.type == "gpu" ? "a GPU runs a path a work-item" : "4 is the least");
     return text + (d.fp64 ? "" : "; --math double, as the device lacks cl_khr_fp64");
 }
 
@@ -72,7 +76,8 @@ RunCommand setup_devices(CLI::App &app) {
     auto options = std::make_shared<DevicesOptions>();
     app.add_flag("--json", options->json, "Print JSON");
     app.add_option("--device", options->device, "What `render` would take: an index, cpu, gpu, or part of a name");
-    app.add_option("--time-limit", options->time_limit, "Seconds that a driver has to answer")->check(CLI::Range(0.001, 3600.0));
+    app.add_option("--time-limit", options->time_limit, "Seconds that a driver has to answer")
+        ->check(CLI::Range(0.001, 3600.0));
     return [options] { return run_devices(*options); };
 }
 

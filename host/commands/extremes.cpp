@@ -50,12 +50,17 @@ int run(ExtremesOptions o) {
     const Device device = open_device(pick.info);
     const Sources sources = o.cl_dir.empty() ? Sources::embedded() : Sources::from_folder(o.cl_dir);
     o.how.sources = &sources;
-    info(fmt::format("device  {} (driver {}; {}), {} x {} pixels, {} samples each, seed {}", pick.info.name, pick.info.driver, pick.reason, o.how.side,
-                     o.how.side, o.how.spp, o.how.seed));
+    info(fmt::format("device  {} (driver {}; {}), {} x {} pixels, {} samples each, seed {}", pick.info.name,
+                     pick.info.driver, pick.reason, o.how.side, o.how.side, o.how.spp, o.how.seed));
 
     std::vector<extremes::Sweep> sweeps;
-    nlohmann::json report = {{"device", pick.info.name}, {"driver", pick.info.driver}, {"side", o.how.side}, {"spp", o.how.spp}, {"seed", o.how.seed},
-                             {"version", OPAL_VERSION}, {"rows", nlohmann::json::array()}};
+    nlohmann::json report = {{"device", pick.info.name},
+                             {"driver", pick.info.driver},
+                             {"side", o.how.side},
+                             {"spp", o.how.spp},
+                             {"seed", o.how.seed},
+                             {"version", OPAL_VERSION},
+                             {"rows", nlohmann::json::array()}};
     bool kept = true;
     for (const extremes::Row *row : rows) {
         sweeps.push_back(extremes::sweep(*row, device, o.how, o.quick ? 3 : 1));
@@ -77,8 +82,12 @@ RunCommand setup_extremes(CLI::App &app) {
     app.add_option("--row", o->names, "What to stretch (--list); all of them where none is named");
     app.add_flag("--list", o->list, "List what can be stretched");
     app.add_flag("--quick", o->quick, "Every third value, small pictures");
-    o->side = app.add_option("--side", o->how.side, "Pixels along each side")->check(CLI::Range(1, 4096))->capture_default_str();
-    o->spp = app.add_option("--spp", o->how.spp, "Samples of each pixel")->check(CLI::Range(1, 1 << 24))->capture_default_str();
+    o->side = app.add_option("--side", o->how.side, "Pixels along each side")
+                  ->check(CLI::Range(1, 4096))
+                  ->capture_default_str();
+    o->spp = app.add_option("--spp", o->how.spp, "Samples of each pixel")
+                 ->check(CLI::Range(1, 1 << 24))
+                 ->capture_default_str();
     app.add_option("--seed", o->how.seed, "Of the random numbers")->capture_default_str();
     app.add_option("--json", o->json, "All figures")->type_name("FILE");
     app.add_option("--plot", o->plot, "SVG of error against parameter")->type_name("FILE");

@@ -3,7 +3,7 @@
 #include "commands/commands.h"
 #include "commands/options.h"
 #include "device/buffers.h"
-#include "flatten/sanity.h"
+#include "flatten/precision_warnings.h"
 
 #include <fmt/format.h>
 
@@ -28,7 +28,8 @@ int host_vector_width() {
 #endif
 }
 
-template <class... Arguments> void row(const char *name, fmt::format_string<Arguments...> text, Arguments &&...arguments) {
+template <class... Arguments>
+void row(const char *name, fmt::format_string<Arguments...> text, Arguments &&...arguments) {
     print("{:<12}{}\n", name, fmt::format(text, std::forward<Arguments>(arguments)...));
 }
 
@@ -58,7 +59,8 @@ std::string counts_text(const std::map<std::string, size_t> &counts) {
 
 void print_mesh(const Mesh &mesh) {
     const auto *triangles = std::get_if<TriangleMesh>(&mesh.shape);
-    row("", "{}: {}, {}{}", mesh.name, triangles ? fmt::format("{} triangles", triangles->triangles.size()) : "parallelogram",
+    row("", "{}: {}, {}{}", mesh.name,
+        triangles ? fmt::format("{} triangles", triangles->triangles.size()) : "parallelogram",
         bsdf_name(mesh.bsdf.record.kind), mesh.radiance ? ", emits " + color_text(*mesh.radiance) + " W/(m^2 sr)" : "");
 }
 

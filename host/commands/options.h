@@ -2,7 +2,7 @@
 #pragma once
 
 #include "device/program.h"
-#include "scene/load.h"
+#include "read/nori/load.h"
 
 #include <CLI/CLI.hpp>
 

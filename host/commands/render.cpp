@@ -11,9 +11,9 @@
 #include "render/renderer.h"
 #include "render/report.h"
 #include "render/stop_rules.h"
+#include "selftest/selftest.h"
 #include "stats/special.h"
 #include "sweep/measure.h"
-#include "trust/selftest.h"
 
 #include <fmt/format.h>
 
@@ -41,8 +41,9 @@ private:
 void apply_size(SceneDescription &scene, const Options &o, const CLI::App &app) {
     if (app.count("--width") + app.count("--height") == 1) // the scene's aspect
         (app.count("--width") ? scene.camera.height : scene.camera.width) =
-            app.count("--width") ? std::max(1, int(std::lround(double(o.width) * scene.camera.height / scene.camera.width)))
-                                 : std::max(1, int(std::lround(double(o.height) * scene.camera.width / scene.camera.height)));
+            app.count("--width")
+                ? std::max(1, int(std::lround(double(o.width) * scene.camera.height / scene.camera.width)))
+                : std::max(1, int(std::lround(double(o.height) * scene.camera.width / scene.camera.height)));
     if (app.count("--width"))
         scene.camera.width = int(o.width);
     if (app.count("--height"))
@@ -51,17 +52,19 @@ void apply_size(SceneDescription &scene, const Options &o, const CLI::App &app) 
         scene.spp = o.spp;
 }
 
-void tell_what_runs(const SceneDescription &scene, const FlatScene &flat, const DevicePick &pick, int lanes, unsigned seed) {
+void tell_what_runs(const SceneDescription &scene, const FlatScene &flat, const DevicePick &pick, int lanes,
+                    unsigned seed) {
     std::string strategy;
     for (int axis = 0; axis < AXIS_COUNT; axis++)
         strategy += fmt::format("{}{} {}", axis ? ", " : "", axes()[axis].name,
-                                axis == AXIS_integrator ? scene.integrator_type : axes()[axis].choices[scene.strategy[axis]].name);
-    info(fmt::format("scene   {}: {} meshes, {} triangles, {} emitters, {} x {} pixels, {} spp, seed {}", scene.file.string(),
-                     scene.meshes.size(), flat.triangles.size(), flat.emitters.size(), scene.camera.width, scene.camera.height,
-                     scene.spp, seed));
+                                axis == AXIS_integrator ? scene.integrator_type
+                                                        : axes()[axis].choices[scene.strategy[axis]].name);
+    info(fmt::format("scene   {}: {} meshes, {} triangles, {} emitters, {} x {} pixels, {} spp, seed {}",
+                     scene.file.string(), scene.meshes.size(), flat.triangles.size(), flat.emitters.size(),
+                     scene.camera.width, scene.camera.height, scene.spp, seed));
     info("how     " + strategy);
-    info(fmt::format("device  {} (driver {}; {}), {} lane{}, math {}", pick.info.name, pick.info.driver, pick.reason, lanes,
-                     lanes == 1 ? "" : "s", name_of(scene.strategy.math)));
+    info(fmt::format("device  {} (driver {}; {}), {} lane{}, math {}", pick.info.name, pick.info.driver, pick.reason,
+                     lanes, lanes == 1 ? "" : "s", name_of(scene.strategy.math)));
 }
 
 constexpr double confidence = 0.95;
@@ -90,7 +93,9 @@ nlohmann::json stop_json(const StopRule &rule, const Stopped &stopped, const Fil
     if (s.empty_pixels == 0)
         j["mean_luminance_interval"] = {s.mean_luminance - half, s.mean_luminance + half};
     if (rule.relative_error > 0)
-        j.update({{"met", s.mean_luminance > 0 && reached <= rule.relative_error}, {"pilot_spp", stopped.pilot_spp}, {"pilot_seconds", stopped.pilot_seconds}});
+        j.update({{"met", s.mean_luminance > 0 && reached <= rule.relative_error},
+                  {"pilot_spp", stopped.pilot_spp},
+                  {"pilot_seconds", stopped.pilot_seconds}});
     return j;
 }
 
@@ -146,8 +151,8 @@ void warn_of_gaps(const Film &film, double seconds) {
     warn(words);
 }
 
-// --strategy auto: sets the strategy of the sweep's preset `course` that costs least by short pilots, and says why. Their
-// samples have indices of their own and are in no image.
+// --strategy auto: sets the strategy of the sweep's preset `course` that costs least by short pilots, and says why.
+// Their samples have indices of their own and are in no image.
 nlohmann::json choose_strategy(SceneDescription &scene, const Device &device, const Sources &sources, unsigned seed) {
     constexpr double pilot_seconds = 0.25;
     const std::vector<Candidate> candidates = parse_strategies(scene, {"course"}, {});
@@ -161,23 +166,25 @@ nlohmann::json choose_strategy(SceneDescription &scene, const Device &device, co
     nlohmann::json report = {{"chosen", candidates[best].name}, {"candidates", nlohmann::json::array()}};
     for (size_t i = 0; i < costs.size(); i++) {
         const double times = costs[best] > 0 ? costs[i] / costs[best] : 1;
-        report["candidates"].push_back({{"strategy", candidates[i].name}, {"relative_cost", times}, {"pilot_spp", pilots[i].spp}});
-        info(fmt::format("auto    {}: {:.3g} times the best's time to equal error ({} pilot samples a pixel){}", candidates[i].label, times,
-                         pilots[i].spp, i == best ? ", taken" : ""));
+        report["candidates"].push_back(
+            {{"strategy", candidates[i].name}, {"relative_cost", times}, {"pilot_spp", pilots[i].spp}});
+        info(fmt::format("auto    {}: {:.3g} times the best's time to equal error ({} pilot samples a pixel){}",
+                         candidates[i].label, times, pilots[i].spp, i == best ? ", taken" : ""));
     }
     scene.strategy = candidates[best].scene.strategy;
     return report;
 }
 
-// Relaxed math may do what it likes, and some drivers' functions then keep 11 bits. Measured on the spot, as no list knows the
-// next driver: a kernel that is the same for all scenes, so that most drivers have it in their cache.
+// Relaxed math may do what it likes, and some drivers' functions then keep 11 bits. Measured on the spot, as no list
+// knows the next driver: a kernel that is the same for all scenes, so that most drivers have it in their cache.
 void warn_of_fast_functions(const Device &device, const BuildOptions &build, const Sources &sources) {
     std::vector<std::string> wrong;
     for (const Finding &f : check_functions(device, build, sources))
         if (!f.passed)
             wrong.push_back(fmt::format("{} {:.3g} (at most {:g} is harmless)", f.check, f.figure, f.limit));
     if (!wrong.empty())
-        warn(fmt::format("--math fast: {} (driver {}) computes functions too coarsely, and the image shows it: {}; take --math precise",
+        warn(fmt::format("--math fast: {} (driver {}) computes functions too coarsely, and the image shows it: {}; "
+                         "take --math precise",
                          device.info.name, device.info.driver, fmt::join(wrong, "; ")));
 }
 
@@ -191,9 +198,11 @@ int run(const Options &o, const CLI::App &app) {
     Stopwatch load;
     SceneDescription scene = load_scene(o.scene);
     apply_size(scene, o, app);
-    const std::filesystem::path exr = o.out.empty() ? scene.file.stem().replace_extension(".exr") : std::filesystem::path(o.out);
+    const std::filesystem::path exr =
+        o.out.empty() ? scene.file.stem().replace_extension(".exr") : std::filesystem::path(o.out);
     const std::filesystem::path png = std::filesystem::path(exr).replace_extension(".png");
-    const bool with_png = !o.no_png && (!std::filesystem::exists(exr) || std::filesystem::is_regular_file(exr)); // none beside /dev/null
+    const bool with_png =
+        !o.no_png && (!std::filesystem::exists(exr) || std::filesystem::is_regular_file(exr)); // none beside /dev/null
     if (png == exr)
         throw Error(fmt::format("--output {}: names the EXR file; the PNG goes beside it", exr.string()));
     check_writable(exr);
@@ -207,7 +216,8 @@ int run(const Options &o, const CLI::App &app) {
     const int lanes = lanes_for(pick.info, scene.strategy.lanes, scene.strategy.math);
     const Device device = open_device(pick.info);
     const Sources sources = load_sources(o.scene);
-    const nlohmann::json choice = o.strategy.empty() ? nlohmann::json() : choose_strategy(scene, device, sources, o.seed);
+    const nlohmann::json choice =
+        o.strategy.empty() ? nlohmann::json() : choose_strategy(scene, device, sources, o.seed);
     Stopwatch bvh;
     const FlatScene flat = flatten(scene, lanes);
     seconds.bvh = bvh.seconds();
@@ -264,7 +274,8 @@ int run(const Options &o, const CLI::App &app) {
     info(fmt::format("wrote   {}{}", exr.string(), with_png ? " and " + png.string() : ""));
     if (stopped.complete)
         return 0;
-    warn(fmt::format("interrupted: the image holds {:.4g} of {} samples a pixel", report["spp"].get<double>(), stopped.spp));
+    warn(fmt::format("interrupted: the image holds {:.4g} of {} samples a pixel", report["spp"].get<double>(),
+                     stopped.spp));
     return exit_interrupted;
 }
 
@@ -274,22 +285,30 @@ RunCommand setup_render(CLI::App &app) {
     auto o = std::make_shared<Options>();
     add_scene_options(app, o->scene);
     add_device_option(app, o->device);
-    app.add_option("-o,--output", o->out, "EXR file; the PNG goes beside it (default: the scene's name, in the current folder)");
+    app.add_option("-o,--output", o->out,
+                   "EXR file; the PNG goes beside it (default: the scene's name, in the current folder)");
     app.add_flag("--no-png", o->no_png, "Write no PNG");
-    app.add_option("--spp", o->spp, "Samples per pixel (default: the scene's sampleCount)")->check(CLI::Range(1u, 0xffffffffu));
-    CLI::Option *time = app.add_option("--time", o->time, "Stop after this much kernel time (30s, 2min); --spp is then the most")->type_name("TIME");
+    app.add_option("--spp", o->spp, "Samples per pixel (default: the scene's sampleCount)")
+        ->check(CLI::Range(1u, 0xffffffffu));
+    CLI::Option *time =
+        app.add_option("--time", o->time, "Stop after this much kernel time (30s, 2min); --spp is then the most")
+            ->type_name("TIME");
     app.add_option("--target-error", o->target_error,
                    "Stop when the relative standard error of the image's mean luminance is below this (1%)\n"
                    "  A pilot of other samples decides how many, so that the image stays unbiased")
         ->type_name("ERROR")
         ->excludes(time);
-    app.add_option("--strategy", o->strategy, "auto: short pilots find which way to sample light costs least on this scene and device")
+    app.add_option("--strategy", o->strategy,
+                   "auto: short pilots find which way to sample light costs least on this scene and device")
         ->check(CLI::IsMember({"auto"}));
-    app.add_option("--width", o->width, "Pixels (default: the scene's; one of both keeps its aspect)")->check(CLI::Range(1, 65535));
+    app.add_option("--width", o->width, "Pixels (default: the scene's; one of both keeps its aspect)")
+        ->check(CLI::Range(1, 65535));
     app.add_option("--height", o->height, "Pixels (default: the scene's)")->check(CLI::Range(1, 65535));
-    app.add_option("--seed", o->seed, "Of the random numbers; the same seed gives the same image")->capture_default_str();
+    app.add_option("--seed", o->seed, "Of the random numbers; the same seed gives the same image")
+        ->capture_default_str();
     app.add_option("--json", o->json, "File for the statistics of the render");
-    app.add_option("--layers", o->layers, "More layers for the EXR: variance (of each pixel's mean)")->check(CLI::IsMember({"variance"}));
+    app.add_option("--layers", o->layers, "More layers for the EXR: variance (of each pixel's mean)")
+        ->check(CLI::IsMember({"variance"}));
     CLI::Option *quiet = app.add_flag("--quiet", o->quiet, "Print nothing but warnings and errors");
     app.add_flag("--verbose", o->verbose, "Print what the driver remarks on the kernels, too")->excludes(quiet);
     return [o, &app] { return run(*o, app); };

@@ -1,13 +1,13 @@
 // opal selftest: is what this device computes right? Each group of checks runs in a process of its own.
+#include "selftest/selftest.h"
 #include "base/log.h"
 #include "base/process.h"
 #include "base/table.h"
 #include "commands/commands.h"
 #include "commands/options.h"
+#include "device/ask_driver.h"
 #include "device/info_json.h"
-#include "device/probe.h"
 #include "image/image.h"
-#include "trust/selftest.h"
 
 #include <fmt/format.h>
 
@@ -51,8 +51,8 @@ std::vector<Variant> variants_of(const DeviceInfo &device) {
 
 ChildProcess start(const Job &job, const Variant &variant, const DeviceInfo &device, const Options &o) {
     const nlohmann::json json = device;
-    return ChildProcess(own_binary(), {"selftest-group", job.group->name, dump(json, -1), std::to_string(variant.lanes), variant.math,
-                                       o.full ? "full" : "quick", std::to_string(o.seed), o.cl_dir});
+    return ChildProcess(own_binary(), {"selftest-group", job.group->name, dump(json, -1), std::to_string(variant.lanes),
+                                       variant.math, o.full ? "full" : "quick", std::to_string(o.seed), o.cl_dir});
 }
 
 void finish(Job &job, ChildProcess &process, ChildProcess::Clock::time_point deadline, double time_limit) {
@@ -64,7 +64,8 @@ void finish(Job &job, ChildProcess &process, ChildProcess::Clock::time_point dea
             if (json.contains("problem"))
                 job.problem = json["problem"];
             else
-                job.findings.push_back({json["check"], json["figure"].is_number() ? json["figure"].get<double>() : NAN, json["limit"], json["passed"]});
+                job.findings.push_back({json["check"], json["figure"].is_number() ? json["figure"].get<double>() : NAN,
+                                        json["limit"], json["passed"]});
         }
     if (!ending.in_time)
         job.problem = fmt::format("did not end within {:g} s", time_limit);
@@ -75,7 +76,8 @@ void finish(Job &job, ChildProcess &process, ChildProcess::Clock::time_point dea
 }
 
 // Two processes at a time: a driver compiles on one core while another computes.
-void run_jobs(std::vector<Job> &jobs, const std::vector<Variant> &variants, const DeviceInfo &device, const Options &o) {
+void run_jobs(std::vector<Job> &jobs, const std::vector<Variant> &variants, const DeviceInfo &device,
+              const Options &o) {
     using Clock = ChildProcess::Clock;
     struct Running {
         Job *job;
@@ -91,8 +93,9 @@ void run_jobs(std::vector<Job> &jobs, const std::vector<Variant> &variants, cons
     for (Job &job : jobs) {
         if (running.size() == 2)
             finish_first();
-        running.push_back({&job, start(job, variants[job.variant], device, o),
-                           Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limit))});
+        running.push_back(
+            {&job, start(job, variants[job.variant], device, o),
+             Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limit))});
     }
     while (!running.empty())
         finish_first();
@@ -122,7 +125,8 @@ void print_table(const std::vector<Job> &jobs, const std::vector<Variant> &varia
             std::string line, limit = fmt::format("{:.3g}", row.limit);
             for (size_t v = 0; v < variants.size(); v++) {
                 const Finding *finding = find_check(jobs, v, row.check);
-                line += fmt::format("{:>12}{}", finding ? fmt::format("{:.3g}", finding->figure) : "-", finding && !finding->passed ? "!" : " ");
+                line += fmt::format("{:>12}{}", finding ? fmt::format("{:.3g}", finding->figure) : "-",
+                                    finding && !finding->passed ? "!" : " ");
             }
             print("{:<52}{:>10}{}\n", row.check, limit, line);
         }
@@ -157,12 +161,19 @@ int run(const Options &o) {
         for (const Finding &f : job.findings) {
             checks++;
             failed += !f.passed;
-            report["checks"].push_back({{"check", f.check}, {"lanes", variants[job.variant].lanes}, {"math", variants[job.variant].math},
-                                        {"figure", f.figure}, {"limit", f.limit}, {"passed", f.passed}});
+            report["checks"].push_back({{"check", f.check},
+                                        {"lanes", variants[job.variant].lanes},
+                                        {"math", variants[job.variant].math},
+                                        {"figure", f.figure},
+                                        {"limit", f.limit},
+                                        {"passed", f.passed}});
         }
         if (!job.problem.empty())
-            report["checks"].push_back({{"check", job.group->name}, {"lanes", variants[job.variant].lanes}, {"math", variants[job.variant].math},
-                                        {"passed", false}, {"problem", job.problem}});
+            report["checks"].push_back({{"check", job.group->name},
+                                        {"lanes", variants[job.variant].lanes},
+                                        {"math", variants[job.variant].math},
+                                        {"passed", false},
+                                        {"problem", job.problem}});
     }
     print("{}: {} of {} checks passed{}, {:.0f} s\n", failed + problems ? "FAILED" : "passed", checks - failed, checks,
           problems ? fmt::format(", {} groups did not end well", problems) : "",
@@ -179,7 +190,8 @@ int run_group(const std::vector<std::string> &words) {
     const CheckGroup &group = find_row(check_groups(), "group", words[0]);
     try {
         const Device device = open_device(nlohmann::json::parse(words[1]).get<DeviceInfo>());
-        const Sources sources = words.size() < 7 || words[6].empty() ? Sources::embedded() : Sources::from_folder(words[6]);
+        const Sources sources =
+            words.size() < 7 || words[6].empty() ? Sources::embedded() : Sources::from_folder(words[6]);
         SelftestOptions options;
         options.build.lanes = std::stoi(words[2]);
         options.build.math = words[3] == "fast" ? MathMode::fast : MathMode::precise;
@@ -206,7 +218,8 @@ RunCommand setup_selftest(CLI::App &app) {
     for (const CheckGroup &group : check_groups())
         groups += fmt::format("\n  {}: {}", group.name, group.help);
     app.add_option("--group", o->groups, "Only this group of checks; may be repeated" + groups)->type_name("NAME");
-    app.add_option("--time-limit", o->time_limit, "Seconds for each group of checks [120, or 1200 with --full]")->check(CLI::PositiveNumber);
+    app.add_option("--time-limit", o->time_limit, "Seconds for each group of checks [120, or 1200 with --full]")
+        ->check(CLI::PositiveNumber);
     app.add_option("--seed", o->seed, "Of the random numbers")->capture_default_str();
     app.add_option("--json", o->json, "File for the findings");
     app.add_option("--cl-dir", o->cl_dir, "Read the kernels from this copy of cl/")->type_name("FOLDER");

@@ -8,9 +8,9 @@
 #include "commands/commands.h"
 #include "commands/options.h"
 #include "render/report.h"
+#include "sweep/convergence_plot.h"
 #include "sweep/page.h"
 #include "sweep/run.h"
-#include "sweep/svg.h"
 
 #include <fmt/format.h>
 
@@ -58,8 +58,8 @@ void check_numbers(const Options &o) {
 Image read_reference(const std::string &file, const SceneDescription &scene) {
     Image image = read_exr(file);
     if (image.width != scene.camera.width || image.height != scene.camera.height)
-        throw Error(fmt::format("--reference {}: has {} x {} pixels, the scene {} x {}", file, image.width, image.height, scene.camera.width,
-                                scene.camera.height));
+        throw Error(fmt::format("--reference {}: has {} x {} pixels, the scene {} x {}", file, image.width,
+                                image.height, scene.camera.width, scene.camera.height));
     for (const char *channel : {"R", "G", "B"})
         if (!image.find(channel))
             throw Error(fmt::format("--reference {}: has no layer {}, which a render has", file, channel));
@@ -108,7 +108,8 @@ std::vector<DevicePick> pick_devices(const Options &o) {
         picks.push_back(pick_device(wanted, known));
         for (size_t i = 0; i + 1 < picks.size(); i++)
             if (picks[i].info.index == picks.back().info.index)
-                throw Error(fmt::format("--device: '{}' and '{}' are the same device, {}", o.devices[i], wanted, picks[i].info.name));
+                throw Error(fmt::format("--device: '{}' and '{}' are the same device, {}", o.devices[i], wanted,
+                                        picks[i].info.name));
     }
     for (const DevicePick &pick : picks)
         if (o.clock == "cpu" && pick.info.type != "cpu")
@@ -144,10 +145,12 @@ void write_results(const SweepRecord &record, const std::filesystem::path &folde
 
 using Part = void (*)(const SweepPlan &, const Device &, const std::vector<Candidate> &, SweepRecord &);
 
-int run_part(Part part, const SweepPlan &plan, const DevicePick &pick, const std::vector<Candidate> &candidates, SweepRecord &record) {
+int run_part(Part part, const SweepPlan &plan, const DevicePick &pick, const std::vector<Candidate> &candidates,
+             SweepRecord &record) {
     const Device device = open_device(pick.info);
     if (part == measure_points)
-        info(fmt::format("device  {}: {} (driver {}; {})", pick.info.index, pick.info.name, pick.info.driver, pick.reason));
+        info(fmt::format("device  {}: {} (driver {}; {})", pick.info.index, pick.info.name, pick.info.driver,
+                         pick.reason));
     watch_interrupts();
     try {
         part(plan, device, candidates, record);
@@ -159,7 +162,8 @@ int run_part(Part part, const SweepPlan &plan, const DevicePick &pick, const std
 }
 
 // The same in a process of its own, for one process loads one driver; what it measured is in the folder.
-int run_part_apart(Part part, const SweepPlan &plan, const DevicePick &pick, const std::vector<Candidate> &candidates, SweepRecord &record) {
+int run_part_apart(Part part, const SweepPlan &plan, const DevicePick &pick, const std::vector<Candidate> &candidates,
+                   SweepRecord &record) {
     const pid_t child = fork();
     if (child < 0)
         throw Error("no process could be started for device " + pick.info.name);
@@ -174,7 +178,8 @@ int run_part_apart(Part part, const SweepPlan &plan, const DevicePick &pick, con
     }
     watch_interrupts(); // the child has it too, and ends
     int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
     record = load_record(plan.folder);
     if (WIFSIGNALED(status))
         throw Error(fmt::format("{}: the driver ended the process by signal {}", pick.info.name, WTERMSIG(status)));
@@ -191,7 +196,11 @@ int run(const Options &o) {
     }
     const std::vector<Candidate> strategies = parse_strategies(scene, o.strategies, o.math);
     const Sources sources = load_sources(o.scene);
-    SweepPlan plan{.folder = {}, .seed = o.seed, .reference_spp = o.reference_spp, .clock = o.clock == "cpu" ? Clock::cpu : Clock::kernel, .sources = &sources};
+    SweepPlan plan{.folder = {},
+                   .seed = o.seed,
+                   .reference_spp = o.reference_spp,
+                   .clock = o.clock == "cpu" ? Clock::cpu : Clock::kernel,
+                   .sources = &sources};
     Image reference;
     if (!o.reference.empty()) {
         reference = read_reference(o.reference, scene);
@@ -208,7 +217,8 @@ int run(const Options &o) {
     for (const Part part : {measure_points, take_pictures})
         for (size_t d = 0; d < devices.size(); d++) {
             std::vector<Candidate> own;
-            std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(own), [&](const Candidate &c) { return c.device == d; });
+            std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(own),
+                         [&](const Candidate &c) { return c.device == d; });
             const auto run_it = devices.size() == 1 ? run_part : run_part_apart;
             if (const int code = run_it(part, plan, devices[d], own, record))
                 return code;
@@ -223,24 +233,43 @@ RunCommand setup_sweep(CLI::App &app) {
     auto o = std::make_shared<Options>();
     add_scene_options(app, o->scene);
     app.remove_option(app.get_option("--math")); // here it takes several
-    app.add_option("--math", o->math, "Cross the strategies with these: precise,fast")->delimiter(',')->type_name("MODE,...")->group("Strategy");
-    app.add_option("--device", o->devices, "Cross the strategies with these: each an index of `opal devices`, cpu, gpu, or part of a name "
-                                           "[the first GPU, else the CPU]")->delimiter(',')->type_name("DEVICE,...");
-    app.add_option("--strategies", o->strategies,
-                   "course, all, or lists axis=value,... after the scene; the first is the baseline [course]\n"
-                   "  course: hemisphere sampling, light sampling and MIS of both kinds; all: samplers and choices besides")
+    app.add_option("--math", o->math, "Cross the strategies with these: precise,fast")
+        ->delimiter(',')
+        ->type_name("MODE,...")
+        ->group("Strategy");
+    app.add_option("--device", o->devices,
+                   "Cross the strategies with these: each an index of `opal devices`, cpu, gpu, or part of a name "
+                   "[the first GPU, else the CPU]")
+        ->delimiter(',')
+        ->type_name("DEVICE,...");
+    app.add_option(
+           "--strategies", o->strategies,
+           "course, all, or lists axis=value,... after the scene; the first is the baseline [course]\n"
+           "  course: hemisphere sampling, light sampling and MIS of both kinds; all: samplers and choices besides")
         ->type_name("STRATEGY...")
         ->expected(1, -1);
-    app.add_option("--spp", o->spp, "Samples per pixel of the points")->delimiter(',')->type_name("N,...")->capture_default_str();
-    app.add_option("--replicates", o->replicates, "Renders of each point, with seeds of their own; at least 2")->capture_default_str();
+    app.add_option("--spp", o->spp, "Samples per pixel of the points")
+        ->delimiter(',')
+        ->type_name("N,...")
+        ->capture_default_str();
+    app.add_option("--replicates", o->replicates, "Renders of each point, with seeds of their own; at least 2")
+        ->capture_default_str();
     app.add_option("--seed", o->seed, "Of the first replicate's random numbers")->capture_default_str();
-    app.add_option("--reference", o->reference, "EXR to hold the images against [made by the best strategy]")->type_name("FILE");
-    app.add_option("--reference-spp", o->reference_spp, "Samples per pixel of the reference that is made [8 times the largest --spp]");
-    app.add_option("--budget", o->budget, "Kernel time for all of it: leaves out the largest --spp until it fits")->type_name("TIME");
-    app.add_option("--clock", o->clock, "kernel: seconds of the device's own profile; cpu: of all cores of a CPU device, over their number: steady "
-                                        "on a machine that others use, too")->check(CLI::IsMember({"kernel", "cpu"}))->capture_default_str();
+    app.add_option("--reference", o->reference, "EXR to hold the images against [made by the best strategy]")
+        ->type_name("FILE");
+    app.add_option("--reference-spp", o->reference_spp,
+                   "Samples per pixel of the reference that is made [8 times the largest --spp]");
+    app.add_option("--budget", o->budget, "Kernel time for all of it: leaves out the largest --spp until it fits")
+        ->type_name("TIME");
+    app.add_option(
+           "--clock", o->clock,
+           "kernel: seconds of the device's own profile; cpu: of all cores of a CPU device, over their number: steady "
+           "on a machine that others use, too")
+        ->check(CLI::IsMember({"kernel", "cpu"}))
+        ->capture_default_str();
     app.add_option("--width", o->width, "Pixels; keeps the aspect (default: the scene's)")->check(CLI::Range(1, 65535));
-    app.add_option("-o,--output", o->out, "Folder; a sweep that is there already goes on [SCENE_sweep]")->type_name("FOLDER");
+    app.add_option("-o,--output", o->out, "Folder; a sweep that is there already goes on [SCENE_sweep]")
+        ->type_name("FOLDER");
     app.add_flag("--quiet", o->quiet, "Print the verdict, warnings and errors only");
     return [o] { return run(*o); };
 }

@@ -3,9 +3,10 @@
 #include "base/log.h"
 #include "commands/commands.h"
 #include "commands/options.h"
+#include "conformance/conformance.h"
 #include "image/image.h"
-#include "scene/test_scene.h"
-#include "trust/conformance.h"
+#include "read/nori/tests.h"
+#include "scene/options.h"
 
 #include <fmt/format.h>
 
@@ -23,16 +24,22 @@ struct Options {
 };
 
 std::string line_of(const ConformanceCase &c) {
-    const std::string figures =
-        c.is_mean ? fmt::format("mean {:<11.6g} reference {:<11.6g} error {:<8.2g}", c.mean, c.reference, c.standard_error)
-                  : fmt::format("chi-square {:<9.2f} dof {:<5g} samples {:<8.4g}", c.result.statistic, c.result.dof, c.samples);
-    return fmt::format("  {}  {:<32} {} p {:<8.3g}{}", c.passed ? "ok      " : "REJECTED", c.name, figures, c.result.p_value,
-                       c.result.reason.empty() ? "" : " " + c.result.reason);
+    const std::string figures = c.is_mean ? fmt::format("mean {:<11.6g} reference {:<11.6g} error {:<8.2g}", c.mean,
+                                                        c.reference, c.standard_error)
+                                          : fmt::format("chi-square {:<9.2f} dof {:<5g} samples {:<8.4g}",
+                                                        c.result.statistic, c.result.dof, c.samples);
+    return fmt::format("  {}  {:<32} {} p {:<8.3g}{}", c.passed ? "ok      " : "REJECTED", c.name, figures,
+                       c.result.p_value, c.result.reason.empty() ? "" : " " + c.result.reason);
 }
 
 nlohmann::json json_of(const ConformanceCase &c) {
-    nlohmann::json json = {{"name", c.name}, {"passed", c.passed}, {"samples", c.samples}, {"p_value", c.result.p_value},
-                           {"statistic", c.result.statistic}, {"dof", c.result.dof}, {"reason", c.result.reason}};
+    nlohmann::json json = {{"name", c.name},
+                           {"passed", c.passed},
+                           {"samples", c.samples},
+                           {"p_value", c.result.p_value},
+                           {"statistic", c.result.statistic},
+                           {"dof", c.result.dof},
+                           {"reason", c.result.reason}};
     if (c.is_mean)
         json.update({{"mean", c.mean}, {"reference", c.reference}, {"standard_error", c.standard_error}});
     return json;
@@ -56,10 +63,12 @@ int run(const Options &o) {
     options.sources = &sources;
     options.seed = o.seed;
     options.overrides = o.scene.overrides;
-    info(fmt::format("device  {} (driver {}; {}), {} lanes", pick.info.name, pick.info.driver, pick.reason, options.build.lanes));
+    info(fmt::format("device  {} (driver {}; {}), {} lanes", pick.info.name, pick.info.driver, pick.reason,
+                     options.build.lanes));
 
     size_t cases = 0, rejected = 0;
-    nlohmann::json report = {{"device", pick.info.name}, {"driver", pick.info.driver}, {"lanes", options.build.lanes}, {"seed", o.seed}};
+    nlohmann::json report = {
+        {"device", pick.info.name}, {"driver", pick.info.driver}, {"lanes", options.build.lanes}, {"seed", o.seed}};
     for (size_t i = 0; i < tests.size(); i++) {
         TestDescription &test = tests[i];
         test.sample_count = o.samples ? o.samples : test.sample_count;
@@ -72,7 +81,8 @@ int run(const Options &o) {
             cases++;
             rejected += !c.passed;
         }
-        report["tests"].push_back({{"file", o.files[i]}, {"type", test.type}, {"significance", test.significance_level}, {"cases", results}});
+        report["tests"].push_back(
+            {{"file", o.files[i]}, {"type", test.type}, {"significance", test.significance_level}, {"cases", results}});
     }
     print("{} of {} cases passed\n", cases - rejected, cases);
     if (!o.json.empty())
@@ -86,8 +96,10 @@ RunCommand setup_test(CLI::App &app) {
     auto o = std::make_shared<Options>();
     app.add_option("FILE.xml", o->files, "Files whose root is a <test>")->required()->type_name("");
     add_device_option(app, o->device);
-    app.add_option("--samples", o->samples, "Of each mean or histogram [the file's sampleCount]")->check(CLI::Range(2, 2000000000));
-    app.add_option("--significance", o->significance, "Level of each file, split over its cases [the file's]")->check(CLI::Range(1e-12, 0.5));
+    app.add_option("--samples", o->samples, "Of each mean or histogram [the file's sampleCount]")
+        ->check(CLI::Range(2, 2000000000));
+    app.add_option("--significance", o->significance, "Level of each file, split over its cases [the file's]")
+        ->check(CLI::Range(1e-12, 0.5));
     app.add_option("--seed", o->seed, "Of the random numbers")->capture_default_str();
     app.add_option("--json", o->json, "File for the results");
     add_strategy_options(app, o->scene);

@@ -3,9 +3,9 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "base/signals.h"
-#include "commands/agreement.h"
 #include "commands/commands.h"
 #include "commands/options.h"
+#include "compare/agreement.h"
 #include "flatten/features.h"
 #include "render/renderer.h"
 
@@ -31,14 +31,17 @@ struct Options {
 class Clock {
 public:
     explicit Clock(double budget) : budget_(budget) {}
-    double left() const { return budget_ - std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+    double left() const {
+        return budget_ - std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
 
 private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     double budget_;
 };
 
-// A box filter, so that pixels are independent, and few pixels, in the scene's aspect where no more than one side is given.
+// A box filter, so that pixels are independent, and few pixels, in the scene's aspect where no more than one side is
+// given.
 void simplify_image(Camera &camera, const Options &o) {
     const double aspect = double(camera.width) / camera.height;
     const auto side = [](double pixels) { return std::max(1, int(std::lround(pixels))); };
@@ -54,14 +57,15 @@ std::vector<NamedStrategy> choose(const SceneDescription &scene, const Options &
     std::vector<NamedStrategy> strategies =
         o.strategies.empty() ? sensible_strategies(scene) : named_strategies(scene, o.strategies);
     if (strategies.size() < 2)
-        throw Error(fmt::format("nothing to hold against each other: {} strategy; --strategies names at least two, as in "
-                                "lighting=mis,mis=power;lighting=emitter",
-                                strategies.size()));
+        throw Error(
+            fmt::format("nothing to hold against each other: {} strategy; --strategies names at least two, as in "
+                        "lighting=mis,mis=power;lighting=emitter",
+                        strategies.size()));
     return strategies;
 }
 
-std::vector<FlatScene> flatten_all(SceneDescription scene, const std::vector<NamedStrategy> &strategies, const DeviceInfo &device,
-                                   bool own_kernels) {
+std::vector<FlatScene> flatten_all(SceneDescription scene, const std::vector<NamedStrategy> &strategies,
+                                   const DeviceInfo &device, bool own_kernels) {
     std::vector<FlatScene> scenes;
     for (const NamedStrategy &s : strategies) {
         scene.strategy = s.strategy;
@@ -106,14 +110,15 @@ std::vector<StrategyRender> render_all(const Options &o, const std::vector<Named
         if (!render_for(renderer, std::max(0.0, clock.left() / double(strategies.size() - i))))
             break;
         const Film film = renderer.film();
-        renders.push_back({strategies[i], image_of(film, true), double(renderer.next_sample()), film.invalid, renderer.kernel_seconds()});
+        renders.push_back({strategies[i], image_of(film, true), double(renderer.next_sample()), film.invalid,
+                           renderer.kernel_seconds()});
         progress.update(double(i + 1));
     }
     return renders;
 }
 
-void leave_evidence(const std::filesystem::path &folder, const Agreement &agreement, const std::vector<StrategyRender> &renders,
-                    const nlohmann::json &report) {
+void leave_evidence(const std::filesystem::path &folder, const Agreement &agreement,
+                    const std::vector<StrategyRender> &renders, const nlohmann::json &report) {
     const PairTest &worst = agreement.worst();
     write_evidence(folder, renders[worst.a].image, renders[worst.b].image, worst.test);
     for (size_t i = 0; i < renders.size(); i++)
@@ -136,8 +141,8 @@ int run(const Options &o) {
         check_writable(o.json);
 
     const DevicePick pick = pick_device(o.device, list_devices());
-    info(fmt::format("verify  {}: {} strategies, {} x {} pixels, {} in all, seed {}", scene.file.string(), strategies.size(),
-                     scene.camera.width, scene.camera.height, duration_text(o.budget), o.seed));
+    info(fmt::format("verify  {}: {} strategies, {} x {} pixels, {} in all, seed {}", scene.file.string(),
+                     strategies.size(), scene.camera.width, scene.camera.height, duration_text(o.budget), o.seed));
     info(fmt::format("device  {} (driver {}; {})", pick.info.name, pick.info.driver, pick.reason));
     const auto specialise = o.scene.overrides.find("specialise");
     const bool own_kernels = specialise != o.scene.overrides.end();
@@ -150,13 +155,19 @@ int run(const Options &o) {
         return exit_interrupted;
     }
     if (clock.left() < -0.25 * o.budget)
-        warn(fmt::format("the budget of {} was exceeded by {:.0f} s: compiling, and {} samples a pixel of each at the least",
-                         duration_text(o.budget), -clock.left(), least_spp));
+        warn(fmt::format(
+            "the budget of {} was exceeded by {:.0f} s: compiling, and {} samples a pixel of each at the least",
+            duration_text(o.budget), -clock.left(), least_spp));
 
     const Agreement agreement = test_agreement(renders, o.significance);
     nlohmann::json report = json_of(agreement, renders);
-    report.update({{"scene", scene.file.string()}, {"device", pick.info.name}, {"driver", pick.info.driver}, {"seed", o.seed},
-                   {"width", scene.camera.width}, {"height", scene.camera.height}, {"budget", o.budget}});
+    report.update({{"scene", scene.file.string()},
+                   {"device", pick.info.name},
+                   {"driver", pick.info.driver},
+                   {"seed", o.seed},
+                   {"width", scene.camera.width},
+                   {"height", scene.camera.height},
+                   {"budget", o.budget}});
     print_text(text_of(agreement, renders));
     if (!agreement.holds() || !o.out.empty())
         leave_evidence(folder, agreement, renders, report);
@@ -171,16 +182,20 @@ RunCommand setup_verify(CLI::App &app) {
     auto o = std::make_shared<Options>();
     add_scene_options(app, o->scene);
     add_device_option(app, o->device);
-    app.add_option("--strategies", o->strategies,
-                   "Those to test, 'lighting=mis,mis=power;lighting=emitter' [all that make sense here, or where these are more "
-                   "than 12 a set in which each pair of choices occurs]");
+    app.add_option(
+        "--strategies", o->strategies,
+        "Those to test, 'lighting=mis,mis=power;lighting=emitter' [all that make sense here, or where these are more "
+        "than 12 a set in which each pair of choices occurs]");
     app.add_option("--budget", o->budget, "Time for all strategies together: 60s, 2min, 1h")
         ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"min", 60}, {"h", 3600}}))
         ->check(CLI::PositiveNumber)
         ->type_name("TIME")
         ->default_str("60s");
-    app.add_option("--significance", o->significance, "Probability of a false alarm")->check(CLI::Range(1e-12, 0.5))->capture_default_str();
-    app.add_option("--width", o->width, "Pixels [32 on the longer side, the scene's aspect]")->check(CLI::Range(1, 65535));
+    app.add_option("--significance", o->significance, "Probability of a false alarm")
+        ->check(CLI::Range(1e-12, 0.5))
+        ->capture_default_str();
+    app.add_option("--width", o->width, "Pixels [32 on the longer side, the scene's aspect]")
+        ->check(CLI::Range(1, 65535));
     app.add_option("--height", o->height, "Pixels")->check(CLI::Range(1, 65535));
     app.add_option("--seed", o->seed, "Of the random numbers")->capture_default_str();
     app.add_option("-o,--output", o->out, "Folder for the evidence [verify_SCENE, on disagreement only]");

@@ -10,20 +10,22 @@ namespace opal {
 namespace {
 
 [[noreturn]] void no_room(const Device &device, unsigned long long bytes, const std::string &what) {
-    throw Error(fmt::format("{}: no room for {}: {} wanted; the device has {} in all and gives at most {} to one buffer",
-                            device.info.name, what, bytes_text(bytes), bytes_text(device.info.memory),
-                            bytes_text(device.info.max_allocation)));
+    throw Error(fmt::format(
+        "{}: no room for {}: {} wanted; the device has {} in all and gives at most {} to one buffer", device.info.name,
+        what, bytes_text(bytes), bytes_text(device.info.memory), bytes_text(device.info.max_allocation)));
 }
 
-// A CPU device's buffer, in huge pages where the system gives them on request: a walk through a large tree then spends a tenth less on
-// finding its pages. Mapped, such a buffer is the memory that kernels see.
+// A CPU device's buffer, in huge pages where the system gives them on request: a walk through a large tree then spends
+// a tenth less on finding its pages. Mapped, such a buffer is the memory that kernels see.
 cl::Buffer make_cpu_buffer(const Device &device, cl_mem_flags flags, unsigned long long bytes, const void *data) {
     constexpr size_t huge_page = 2u << 20;
     cl::Buffer buffer(device.context, flags, bytes);
-    char *const memory = static_cast<char *>(device.queue.enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0, bytes));
+    char *const memory =
+        static_cast<char *>(device.queue.enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0, bytes));
     char *const first = memory + (huge_page - reinterpret_cast<uintptr_t>(memory) % huge_page) % huge_page;
     if (first + huge_page <= memory + bytes)
-        madvise(first, size_t(memory + bytes - first) / huge_page * huge_page, MADV_HUGEPAGE); // advice: no harm where it is refused
+        madvise(first, size_t(memory + bytes - first) / huge_page * huge_page,
+                MADV_HUGEPAGE); // advice: no harm where it is refused
     if (data)
         std::memcpy(memory, data, bytes);
     device.queue.enqueueUnmapMemObject(buffer, memory);

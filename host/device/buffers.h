@@ -1,4 +1,5 @@
-// Buffers in the device's memory. One that does not fit is an Error naming device, what for, bytes wanted and available.
+// Buffers in the device's memory. One that does not fit is an Error naming device, what for, bytes wanted and
+// available.
 #pragma once
 
 #include "device/context.h"
@@ -17,13 +18,16 @@ cl::Buffer make_buffer(const Device &device, cl_mem_flags flags, unsigned long l
 // A read-only table. OpenCL has no empty buffers: an empty table gets room for one element, unwritten.
 template <class T> cl::Buffer make_table(const Device &device, const std::vector<T> &rows, const std::string &what) {
     const bool empty = rows.empty();
-    return make_buffer(device, CL_MEM_READ_ONLY, sizeof(T) * (empty ? 1 : rows.size()), empty ? nullptr : rows.data(), what);
+    return make_buffer(device, CL_MEM_READ_ONLY, sizeof(T) * (empty ? 1 : rows.size()), empty ? nullptr : rows.data(),
+                       what);
 }
 
 // Room for `count` elements that kernels write, all bytes 0 at first.
 template <class T> cl::Buffer make_zeros(const Device &device, size_t count, const std::string &what) {
     cl::Buffer buffer = make_buffer(device, CL_MEM_READ_WRITE, sizeof(T) * (count ? count : 1), nullptr, what);
-    with_device(device.info, [&] { return device.queue.enqueueFillBuffer(buffer, cl_uchar(0), 0, sizeof(T) * (count ? count : 1)); });
+    with_device(device.info, [&] {
+        return device.queue.enqueueFillBuffer(buffer, cl_uchar(0), 0, sizeof(T) * (count ? count : 1));
+    });
     return buffer;
 }
 
@@ -31,7 +35,8 @@ template <class T> cl::Buffer make_zeros(const Device &device, size_t count, con
 template <class T> std::vector<T> read_buffer(const Device &device, const cl::Buffer &buffer, size_t count) {
     std::vector<T> rows(count);
     if (count)
-        with_device(device.info, [&] { return device.queue.enqueueReadBuffer(buffer, CL_TRUE, 0, sizeof(T) * count, rows.data()); });
+        with_device(device.info,
+                    [&] { return device.queue.enqueueReadBuffer(buffer, CL_TRUE, 0, sizeof(T) * count, rows.data()); });
     return rows;
 }
 

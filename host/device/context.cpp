@@ -1,7 +1,7 @@
 #include "device/context.h"
 
+#include "device/ask_driver.h"
 #include "device/load_driver.h"
-#include "device/probe.h"
 
 #include <fmt/format.h>
 
@@ -18,7 +18,9 @@ std::string lower(std::string text) {
     return text;
 }
 
-bool contains(const std::string &text, const std::string &part) { return lower(text).find(lower(part)) != std::string::npos; }
+bool contains(const std::string &text, const std::string &part) {
+    return lower(text).find(lower(part)) != std::string::npos;
+}
 
 // Mesa's software rasterisers call themselves GPUs or CPUs; a ray caster got wrong hits on them (DESIGN section 5).
 bool is_software_rasteriser(const DeviceInfo &info) {
@@ -39,17 +41,18 @@ DevicePick default_device(const std::vector<DeviceInfo> &devices) {
     const DeviceInfo *best = nullptr;
     int best_rank = 0;
     for (const DeviceInfo &device : devices) {
-        const int rank = !device.problem.empty()           ? 0
-                         : is_software_rasteriser(device)  ? 1
-                         : device.type == "accelerator"    ? 2
-                         : device.type == "cpu"            ? 3
-                                                           : 4;
+        const int rank = !device.problem.empty()          ? 0
+                         : is_software_rasteriser(device) ? 1
+                         : device.type == "accelerator"   ? 2
+                         : device.type == "cpu"           ? 3
+                                                          : 4;
         if (rank > best_rank) {
             best = &device;
             best_rank = rank;
         }
     }
-    static const char *const reasons[] = {"", "only a software rasteriser was found", "no GPU and no CPU device was found",
+    static const char *const reasons[] = {"", "only a software rasteriser was found",
+                                          "no GPU and no CPU device was found",
                                           "the first CPU device, as there is no GPU", "the first GPU"};
     if (!best)
         throw Error("no usable OpenCL device; found: " + list_of(devices));
@@ -93,8 +96,8 @@ DevicePick pick_device(const std::string &wanted, const std::vector<DeviceInfo> 
             unusable = unusable ? unusable : &device;
         }
     if (unusable)
-        throw Error(fmt::format("device {} ({}) cannot be used: it {}; available: {}", unusable->index, unusable->platform,
-                                unusable->problem, list_of(devices)));
+        throw Error(fmt::format("device {} ({}) cannot be used: it {}; available: {}", unusable->index,
+                                unusable->platform, unusable->problem, list_of(devices)));
     throw Error(fmt::format("no OpenCL device \"{}\"; available: {}", wanted, list_of(devices)));
 }
 
@@ -102,7 +105,8 @@ Device open_device(const DeviceInfo &info) {
     return with_device(info, [&] {
         std::optional<Device> found;
         for_each_device(info.library, [&](const DeviceInfo &seen, const cl::Device &device) {
-            if (seen.platform_place == info.platform_place && seen.device_place == info.device_place && seen.name == info.name)
+            if (seen.platform_place == info.platform_place && seen.device_place == info.device_place &&
+                seen.name == info.name)
                 found = Device{info, device, cl::Context(), cl::CommandQueue()};
         });
         if (!found)

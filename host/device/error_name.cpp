@@ -3,8 +3,8 @@
 namespace opal {
 
 std::string cl_error_name(int code) {
-#define OPAL_NAME(name) \
-    case name: \
+#define OPAL_NAME(name)                                                                                                \
+    case name:                                                                                                         \
         return #name;
     switch (code) {
         OPAL_NAME(CL_DEVICE_NOT_FOUND)

@@ -6,7 +6,8 @@
 
 namespace opal {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceInfo, index, platform, name, vendor, type, version, driver, memory, max_allocation,
-                                   compute_units, fp64, vector_width, native_lanes, library, platform_place, device_place, problem)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceInfo, index, platform, name, vendor, type, version, driver, memory,
+                                   max_allocation, compute_units, fp64, vector_width, native_lanes, library,
+                                   platform_place, device_place, problem)
 
 } // namespace opal

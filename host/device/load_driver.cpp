@@ -48,11 +48,13 @@ void describe(const cl::Device &device, DeviceInfo &info) {
         info.problem = "has no compiler";
 }
 
-// Tells the OpenCL loader, which reads its environment when it is first called, to load this library and no other; undone
-// afterwards, so that processes started later do not inherit it. Three loaders are about:
-// - Khronos's takes libraries from OCL_ICD_FILENAMES, and from OCL_ICD_VENDORS a folder of .icd files (icd.c, icd_linux.c);
+// Tells the OpenCL loader, which reads its environment when it is first called, to load this library and no other;
+// undone afterwards, so that processes started later do not inherit it. Three loaders are about:
+// - Khronos's takes libraries from OCL_ICD_FILENAMES, and from OCL_ICD_VENDORS a folder of .icd files (icd.c,
+// icd_linux.c);
 // - NVIDIA's, made from it, wants a slash at the end of that folder;
-// - ocl-icd does not know OCL_ICD_FILENAMES, but an OCL_ICD_VENDORS that is no folder and no .icd file is the library itself
+// - ocl-icd does not know OCL_ICD_FILENAMES, but an OCL_ICD_VENDORS that is no folder and no .icd file is the library
+// itself
 //   (libOpenCL(7)).
 // The library's name in both variables is understood by each, and needs no folder to be written.
 class LoaderEnvironment {
@@ -90,8 +92,8 @@ std::vector<cl::Platform> platforms_of(const std::string &library) {
     return platforms;
 }
 
-// Where the dynamic linker found a library that is loaded. Empty where it is not: the loader then took no notice of what it
-// was told and listed whatever it found.
+// Where the dynamic linker found a library that is loaded. Empty where it is not: the loader then took no notice of
+// what it was told and listed whatever it found.
 std::string path_of(const std::string &library) {
     void *const handle = library.empty() ? nullptr : dlopen(library.c_str(), RTLD_LAZY | RTLD_NOLOAD);
     if (!handle)
@@ -104,14 +106,18 @@ std::string path_of(const std::string &library) {
 
 // Loaders pass over a library without platforms and do not say why.
 std::string why_no_platform(const std::string &library) {
-    return dlopen(library.c_str(), RTLD_NOW) ? "offers no platform" : std::string("cannot be loaded (") + dlerror() + ")";
+    return dlopen(library.c_str(), RTLD_NOW) ? "offers no platform"
+                                             : std::string("cannot be loaded (") + dlerror() + ")";
 }
 
-std::string problem_of(const cl::Error &error) { return std::string(error.what()) + " failed: " + cl_error_name(error.err()); }
+std::string problem_of(const cl::Error &error) {
+    return std::string(error.what()) + " failed: " + cl_error_name(error.err());
+}
 
 } // namespace
 
-void for_each_device(const std::string &library, const std::function<void(const DeviceInfo &, const cl::Device &)> &use) {
+void for_each_device(const std::string &library,
+                     const std::function<void(const DeviceInfo &, const cl::Device &)> &use) {
     const std::vector<cl::Platform> platforms = platforms_of(library);
     DeviceInfo driver;
     if (platforms.empty() && !library.empty()) {

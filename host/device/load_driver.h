@@ -7,8 +7,10 @@
 
 namespace opal {
 
-// library: the driver's, as dlopen takes it; empty: whatever the loader finds. `use` gets each device in the loader's order.
-// A platform or device that fails a question, or a library that gives no platform, is described by its `problem`.
-void for_each_device(const std::string &library, const std::function<void(const DeviceInfo &, const cl::Device &)> &use);
+// library: the driver's, as dlopen takes it; empty: whatever the loader finds. `use` gets each device in the loader's
+// order. A platform or device that fails a question, or a library that gives no platform, is described by its
+// `problem`.
+void for_each_device(const std::string &library,
+                     const std::function<void(const DeviceInfo &, const cl::Device &)> &use);
 
 } // namespace opal

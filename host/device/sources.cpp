@@ -58,7 +58,9 @@ public:
 
 private:
     // What is there already, and what only programs of one lane need.
-    bool left_out(const std::string &name) const { return done_.count(name) != 0 || (lanes_ != 1 && name.starts_with("one_lane/")); }
+    bool left_out(const std::string &name) const {
+        return done_.count(name) != 0 || (lanes_ != 1 && name.starts_with("one_lane/"));
+    }
 
     void append_line(const std::string &name, const std::string &line, int number) {
         const std::string include = included_file(line);

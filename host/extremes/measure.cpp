@@ -11,8 +11,9 @@ namespace opal::extremes {
 
 namespace {
 
-// Correct: energy within this of double precision, or within three standard errors of the difference, which may not itself exceed the
-// noise of the picture; no sample NaN or infinite; leaks and self-shadows no more than a ray in a million.
+// Correct: energy within this of double precision, or within three standard errors of the difference, which may not
+// itself exceed the noise of the picture; no sample NaN or infinite; leaks and self-shadows no more than a ray in a
+// million.
 constexpr double sigmas = 3, rays_astray = 1e-6;
 
 Film render(const Row &row, SceneDescription scene, double value, const Device &device, const How &how, MathMode math) {
@@ -52,12 +53,15 @@ double relative(double a, double b) { return a == b ? 0 : std::abs(a - b) / std:
 std::string fault_of(const Row &row, const Point &p) {
     std::vector<std::string> faults;
     if (p.invalid_single)
-        faults.push_back(fmt::format("{} samples NaN or infinite{}", p.invalid_single, p.invalid_oracle ? " (in double too)" : ""));
+        faults.push_back(
+            fmt::format("{} samples NaN or infinite{}", p.invalid_single, p.invalid_oracle ? " (in double too)" : ""));
     if (!(p.error <= std::max(row.tolerance, sigmas * p.paired_noise)))
         faults.push_back(fmt::format("energy off by {:.2g}", p.error));
     if (!(p.paired_noise <= std::max(row.tolerance, 2 * p.noise)))
         faults.push_back(fmt::format("pixels off by {:.2g}", p.paired_noise));
-    if (p.single_truth && !(*p.single_truth <= std::max(1e-3, sigmas * std::sqrt(2.0) * p.noise))) // the truth may be a picture with noise, too
+    if (p.single_truth &&
+        !(*p.single_truth <=
+          std::max(1e-3, sigmas * std::sqrt(2.0) * p.noise))) // the truth may be a picture with noise, too
         faults.push_back(fmt::format("off the truth by {:.2g}", *p.single_truth));
     if (p.leaks.value_or(0) > rays_astray)
         faults.push_back(fmt::format("{:.2g} of the rays leak", *p.leaks));
@@ -83,8 +87,11 @@ Point measure_probe(const Row &row, double value, const Device &device, const Ho
 Point measure(const Row &row, double value, const Device &device, const How &how, std::optional<double> truth) {
     if (row.probe)
         return measure_probe(row, value, device, how);
-    const auto film = [&](const SceneDescription &scene, MathMode math) { return render(row, scene, value, device, how, math); };
-    const Film single = film(row.picture(value), MathMode::precise), oracle = film(row.picture(value), MathMode::double_precision);
+    const auto film = [&](const SceneDescription &scene, MathMode math) {
+        return render(row, scene, value, device, how, math);
+    };
+    const Film single = film(row.picture(value), MathMode::precise),
+               oracle = film(row.picture(value), MathMode::double_precision);
     const FilmStatistics s = statistics_of(single), o = statistics_of(oracle);
     Point p{};
     p.value = value;
@@ -132,10 +139,13 @@ Sweep sweep(const Row &row, const Device &device, const How &how, size_t stride)
     Sweep s{&row, {}, 0, 0, true};
     std::optional<double> invariant;
     if (row.invariant)
-        invariant = statistics_of(render(row, row.picture(row.start), row.start, device, how, MathMode::double_precision)).mean_luminance;
+        invariant =
+            statistics_of(render(row, row.picture(row.start), row.start, device, how, MathMode::double_precision))
+                .mean_luminance;
     for (size_t i = 0; i < row.values.size(); i++) {
         const double value = row.values[i];
-        if (i % stride && i + 1 < row.values.size() && value != row.start && value != row.promised_from && value != row.promised_to)
+        if (i % stride && i + 1 < row.values.size() && value != row.start && value != row.promised_from &&
+            value != row.promised_to)
             continue;
         s.points.push_back(measure(row, value, device, how, row.truth ? std::optional(row.truth(value)) : invariant));
         s.kept = s.kept && (!promised(row, value) || s.points.back().fault.empty());
@@ -151,7 +161,8 @@ std::string breaking_point(const Sweep &s) {
     std::string beyond;
     for (size_t i = 0; i < s.points.size(); i++) {
         const auto correct = [&](const Point &p) { return p.value >= s.from && p.value <= s.to; };
-        const bool neighbour = (i > 0 && correct(s.points[i - 1])) || (i + 1 < s.points.size() && correct(s.points[i + 1]));
+        const bool neighbour =
+            (i > 0 && correct(s.points[i - 1])) || (i + 1 < s.points.size() && correct(s.points[i + 1]));
         if (!correct(s.points[i]) && neighbour)
             beyond += fmt::format("; at {:g} {}", s.points[i].value, s.points[i].fault);
     }

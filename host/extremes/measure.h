@@ -3,27 +3,29 @@
 
 #include "device/program.h"
 #include "extremes/rows.h"
-#include "render/film.h"
+#include "film/film.h"
 
 namespace opal::extremes {
 
 struct Point {
-    double value;                    // of the row's parameter
-    double single, oracle;           // mean luminance of the two pictures
-    double noise;                    // relative standard error of `single`, as rendered
-    double error;                    // |single - oracle| / oracle: what rounding did to the energy
-    double paired_noise;             // relative standard error of single - oracle: what a few paths sent elsewhere explain
-    std::optional<double> single_truth, oracle_truth; // relative errors against the truth or, of an invariant row, the start's oracle
-    std::optional<double> leaks, shadows;             // shares of rays, single precision: through closed walls; into their own plane
+    double value;          // of the row's parameter
+    double single, oracle; // mean luminance of the two pictures
+    double noise;          // relative standard error of `single`, as rendered
+    double error;          // |single - oracle| / oracle: what rounding did to the energy
+    double paired_noise;   // relative standard error of single - oracle: what a few paths sent elsewhere explain
+    std::optional<double> single_truth,
+        oracle_truth; // relative errors against the truth or, of an invariant row, the start's oracle
+    std::optional<double> leaks,
+        shadows; // shares of rays, single precision: through closed walls; into their own plane
     unsigned long long invalid_single, invalid_oracle;
-    std::string fault;               // why single precision is not correct here; empty: it is
+    std::string fault; // why single precision is not correct here; empty: it is
 };
 
 struct Sweep {
     const Row *row;
     std::vector<Point> points;
-    double from, to;                 // around the start, where single precision is correct; NaN: not even there
-    bool kept;                       // what is promised holds
+    double from, to; // around the start, where single precision is correct; NaN: not even there
+    bool kept;       // what is promised holds
 };
 
 // Renders the row on `device`, every `stride`th value and the last. Error: what the renderer throws.

@@ -30,20 +30,25 @@ const Curve curves[] = {
     {"noise of the picture", "#999999", [](const Point &p) { return std::optional(p.noise); }},
 };
 
-double across(size_t i, size_t count) { return left + (width - left - right) * (count > 1 ? double(i) / double(count - 1) : 0.5); }
+double across(size_t i, size_t count) {
+    return left + (width - left - right) * (count > 1 ? double(i) / double(count - 1) : 0.5);
+}
 double down(double error) {
-    const double t = std::log10(std::clamp(std::isfinite(error) ? error : most, least, most) / least) / std::log10(most / least);
+    const double t =
+        std::log10(std::clamp(std::isfinite(error) ? error : most, least, most) / least) / std::log10(most / least);
     return top + (height - top - bottom) * (1 - t);
 }
 
 std::string axes_of(const Sweep &s) {
     std::string svg;
     for (int e = -8; e <= 0; e += 2)
-        svg += fmt::format("<line x1='{0}' x2='{1}' y1='{2:.1f}' y2='{2:.1f}' stroke='#dddddd'/><text x='{3}' y='{4:.1f}' text-anchor='end'>1e{5}</text>\n",
+        svg += fmt::format("<line x1='{0}' x2='{1}' y1='{2:.1f}' y2='{2:.1f}' stroke='#dddddd'/><text x='{3}' "
+                           "y='{4:.1f}' text-anchor='end'>1e{5}</text>\n",
                            left, width - right, down(std::pow(10.0, e)), left - 4, down(std::pow(10.0, e)) + 3, e);
     for (size_t i = 0; i < s.points.size(); i++)
-        svg += fmt::format("<text x='{0:.1f}' y='{1}' text-anchor='end' transform='rotate(-40 {0:.1f} {1})'>{2:.6g}</text>\n",
-                           across(i, s.points.size()), height - bottom + 12, s.points[i].value);
+        svg += fmt::format(
+            "<text x='{0:.1f}' y='{1}' text-anchor='end' transform='rotate(-40 {0:.1f} {1})'>{2:.6g}</text>\n",
+            across(i, s.points.size()), height - bottom + 12, s.points[i].value);
     return svg;
 }
 
@@ -55,11 +60,14 @@ std::string promise_of(const Sweep &s) {
             from = std::min(from, across(i, s.points.size()));
             to = std::max(to, across(i, s.points.size()));
         }
-    return from > to ? "" : fmt::format("<rect x='{:.1f}' y='{}' width='{:.1f}' height='{}' fill='#eef6ee'/>\n", from, top, to - from, height - top - bottom);
+    return from > to ? ""
+                     : fmt::format("<rect x='{:.1f}' y='{}' width='{:.1f}' height='{}' fill='#eef6ee'/>\n", from, top,
+                                   to - from, height - top - bottom);
 }
 
 std::string panel_of(const Sweep &s) {
-    std::string svg = fmt::format("<text x='{}' y='14' font-weight='bold'>{}</text><text x='{}' y='26'>{}</text>\n", left, s.row->name, left, s.row->stretched);
+    std::string svg = fmt::format("<text x='{}' y='14' font-weight='bold'>{}</text><text x='{}' y='26'>{}</text>\n",
+                                  left, s.row->name, left, s.row->stretched);
     svg += promise_of(s) + axes_of(s);
     for (const Curve &curve : curves) {
         std::string points;
@@ -67,52 +75,71 @@ std::string panel_of(const Sweep &s) {
             if (const auto value = curve.value(s.points[i]))
                 points += fmt::format("{:.1f},{:.1f} ", across(i, s.points.size()), down(*value));
         if (!points.empty())
-            svg += fmt::format("<polyline points='{}' fill='none' stroke='{}' stroke-width='1.6'/>\n", points, curve.color);
+            svg += fmt::format("<polyline points='{}' fill='none' stroke='{}' stroke-width='1.6'/>\n", points,
+                               curve.color);
     }
     for (size_t i = 0; i < s.points.size(); i++)
         if (!s.points[i].fault.empty())
-            svg += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='3.5' fill='#c0392b'/>\n", across(i, s.points.size()), down(s.points[i].error));
+            svg += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='3.5' fill='#c0392b'/>\n", across(i, s.points.size()),
+                               down(s.points[i].error));
     return svg;
 }
 
 } // namespace
 
 std::string table_of(const Sweep &s) {
-    std::string text = fmt::format("\n{}: {}\n  {:>10} {:>12} {:>12} {:>9} {:>9} {:>9} {:>9} {:>9} {:>8} {:>8}\n", s.row->name, s.row->stretched, "value",
-                                   "single", "double", "error", "paired", "noise", "leaks", "shadows", "invalid", "of truth");
+    std::string text = fmt::format("\n{}: {}\n  {:>10} {:>12} {:>12} {:>9} {:>9} {:>9} {:>9} {:>9} {:>8} {:>8}\n",
+                                   s.row->name, s.row->stretched, "value", "single", "double", "error", "paired",
+                                   "noise", "leaks", "shadows", "invalid", "of truth");
     for (const Point &p : s.points)
-        text += fmt::format("  {:>10.8g} {:>12.6g} {:>12.6g} {:>9.1e} {:>9.1e} {:>9.1e} {:>9} {:>9} {:>8} {:>8}{}{}\n", p.value, p.single, p.oracle, p.error,
-                            p.paired_noise, p.noise, share(p.leaks), share(p.shadows), p.invalid_single, share(p.single_truth),
-                            p.fault.empty() ? "" : "  ", p.fault);
+        text +=
+            fmt::format("  {:>10.8g} {:>12.6g} {:>12.6g} {:>9.1e} {:>9.1e} {:>9.1e} {:>9} {:>9} {:>8} {:>8}{}{}\n",
+                        p.value, p.single, p.oracle, p.error, p.paired_noise, p.noise, share(p.leaks), share(p.shadows),
+                        p.invalid_single, share(p.single_truth), p.fault.empty() ? "" : "  ", p.fault);
     return text + fmt::format("  {}{}\n", breaking_point(s), s.kept ? "" : "  PROMISE BROKEN");
 }
 
 nlohmann::json json_of(const Sweep &s) {
-    nlohmann::json j = {{"row", s.row->name}, {"stretched", s.row->stretched}, {"correct_from", s.from}, {"correct_to", s.to},
-                        {"promised_from", s.row->promised_from}, {"promised_to", s.row->promised_to}, {"promise_kept", s.kept},
-                        {"breaking_point", breaking_point(s)}, {"points", nlohmann::json::array()}};
+    nlohmann::json j = {
+        {"row", s.row->name},     {"stretched", s.row->stretched},         {"correct_from", s.from},
+        {"correct_to", s.to},     {"promised_from", s.row->promised_from}, {"promised_to", s.row->promised_to},
+        {"promise_kept", s.kept}, {"breaking_point", breaking_point(s)},   {"points", nlohmann::json::array()}};
     for (const Point &p : s.points)
-        j["points"].push_back({{"value", p.value}, {"single", p.single}, {"double", p.oracle}, {"error", p.error}, {"paired_noise", p.paired_noise},
-                               {"noise", p.noise}, {"single_truth_error", number(p.single_truth)}, {"double_truth_error", number(p.oracle_truth)},
-                               {"leaks", number(p.leaks)}, {"self_shadows", number(p.shadows)}, {"invalid_single", p.invalid_single},
-                               {"invalid_double", p.invalid_oracle}, {"fault", p.fault}});
+        j["points"].push_back({{"value", p.value},
+                               {"single", p.single},
+                               {"double", p.oracle},
+                               {"error", p.error},
+                               {"paired_noise", p.paired_noise},
+                               {"noise", p.noise},
+                               {"single_truth_error", number(p.single_truth)},
+                               {"double_truth_error", number(p.oracle_truth)},
+                               {"leaks", number(p.leaks)},
+                               {"self_shadows", number(p.shadows)},
+                               {"invalid_single", p.invalid_single},
+                               {"invalid_double", p.invalid_oracle},
+                               {"fault", p.fault}});
     return j;
 }
 
 std::string svg_of(const std::vector<Sweep> &sweeps) {
     const int lines = int((sweeps.size() + columns - 1) / columns);
-    std::string svg = fmt::format("<svg xmlns='http://www.w3.org/2000/svg' width='{}' height='{}' font-family='sans-serif' font-size='9'>\n"
-                                  "<rect width='100%' height='100%' fill='white'/>\n", columns * width, lines * height + 24);
+    std::string svg = fmt::format(
+        "<svg xmlns='http://www.w3.org/2000/svg' width='{}' height='{}' font-family='sans-serif' font-size='9'>\n"
+        "<rect width='100%' height='100%' fill='white'/>\n",
+        columns * width, lines * height + 24);
     for (size_t i = 0; i < sweeps.size(); i++)
-        svg += fmt::format("<g transform='translate({} {})'>\n{}</g>\n", int(i % columns) * width, int(i / columns) * height, panel_of(sweeps[i]));
+        svg += fmt::format("<g transform='translate({} {})'>\n{}</g>\n", int(i % columns) * width,
+                           int(i / columns) * height, panel_of(sweeps[i]));
     int x = left;
     for (const Curve &curve : curves) {
-        svg += fmt::format("<line x1='{0}' x2='{1}' y1='{2}' y2='{2}' stroke='{3}' stroke-width='2'/><text x='{4}' y='{5}'>{6}</text>\n", x, x + 16,
-                           lines * height + 10, curve.color, x + 20, lines * height + 13, curve.name);
+        svg += fmt::format("<line x1='{0}' x2='{1}' y1='{2}' y2='{2}' stroke='{3}' stroke-width='2'/><text x='{4}' "
+                           "y='{5}'>{6}</text>\n",
+                           x, x + 16, lines * height + 10, curve.color, x + 20, lines * height + 13, curve.name);
         x += 160;
     }
-    return svg + fmt::format("<circle cx='{}' cy='{}' r='3.5' fill='#c0392b'/><text x='{}' y='{}'>not correct</text>\n</svg>\n", x, lines * height + 10,
-                             x + 8, lines * height + 13);
+    return svg + fmt::format(
+                     "<circle cx='{}' cy='{}' r='3.5' fill='#c0392b'/><text x='{}' y='{}'>not correct</text>\n</svg>\n",
+                     x, lines * height + 10, x + 8, lines * height + 13);
 }
 
 } // namespace opal::extremes

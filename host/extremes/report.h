@@ -7,8 +7,8 @@
 
 namespace opal::extremes {
 
-std::string table_of(const Sweep &sweep);                     // lines for the terminal
+std::string table_of(const Sweep &sweep); // lines for the terminal
 nlohmann::json json_of(const Sweep &sweep);
-std::string svg_of(const std::vector<Sweep> &sweeps);         // error against parameter, a panel a row
+std::string svg_of(const std::vector<Sweep> &sweeps); // error against parameter, a panel a row
 
 } // namespace opal::extremes

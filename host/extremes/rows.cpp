@@ -35,7 +35,8 @@ std::function<SceneDescription(double)> as_detail(SceneDescription (*scene)()) {
     return [scene](double factor) {
         SceneDescription detail = moved(scene(), factor, {0.61, -0.37, 0.53});
         for (const Vec3 &corner : {Vec3{1, 1, 1}, Vec3{-1, -1, -1}})
-            detail.meshes.push_back(made_of(mesh_of({corner, corner * 0.99, {corner.x, corner.y * 0.99, corner.z}}, {{0, 1, 2}}), diffuse(0.5)));
+            detail.meshes.push_back(made_of(
+                mesh_of({corner, corner * 0.99, {corner.x, corner.y * 0.99, corner.z}}, {{0, 1, 2}}), diffuse(0.5)));
         return detail;
     };
 }
@@ -49,15 +50,24 @@ Mesh lamp_over(Vec3 at, double side, double radiance) { // faces down
     return light(Parallelogram{at - Vec3{side / 2, 0, side / 2}, {side, 0, 0}, {0, 0, side}}, radiance);
 }
 
-SceneDescription light_of_size(double side) { return floor_under(lamp_over({0, 1, 0}, side, side < 1 ? 1 / (side * side) : 1), diffuse(0.5)); }
-SceneDescription light_at_distance(double d) { return floor_under(lamp_over({0, d, 0}, 1, d > 1 ? d * d : 1), diffuse(0.5), 0.3); }
+SceneDescription light_of_size(double side) {
+    return floor_under(lamp_over({0, 1, 0}, side, side < 1 ? 1 / (side * side) : 1), diffuse(0.5));
+}
+SceneDescription light_at_distance(double d) {
+    return floor_under(lamp_over({0, d, 0}, 1, d > 1 ? d * d : 1), diffuse(0.5), 0.3);
+}
 SceneDescription light_edge_on(double degrees) { // between its plane and the middle of the floor
     const double a = degrees * (std::numbers::pi / 180), s = std::sin(a), c = std::cos(a);
-    return floor_under(light(Parallelogram{{-1.2, 0.5, -0.3}, {0.6 * c, 0.6 * s, 0}, {0, 0, 0.6}}, 1 / s), diffuse(0.5));
+    return floor_under(light(Parallelogram{{-1.2, 0.5, -0.3}, {0.6 * c, 0.6 * s, 0}, {0, 0, 0.6}}, 1 / s),
+                       diffuse(0.5));
 }
 // A light that stands on the floor, or above a gap.
-SceneDescription light_standing(double gap) { return floor_under(light(quad({-0.3, gap, 0.5}, {0, 0.5, 0}, {0.6, 0, 0}), 1), diffuse(0.5)); }
-SceneDescription light_of_radiance(double radiance) { return floor_under(lamp_over({0, 1, 0}, 0.5, radiance), diffuse(0.5)); }
+SceneDescription light_standing(double gap) {
+    return floor_under(light(quad({-0.3, gap, 0.5}, {0, 0.5, 0}, {0.6, 0, 0}), 1), diffuse(0.5));
+}
+SceneDescription light_of_radiance(double radiance) {
+    return floor_under(lamp_over({0, 1, 0}, 0.5, radiance), diffuse(0.5));
+}
 
 SceneDescription rough_floor(double alpha) { return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4), microfacet(alpha)); }
 SceneDescription grazed_floor(double degrees) { // above the floor's plane
@@ -66,21 +76,24 @@ SceneDescription grazed_floor(double degrees) { // above the floor's plane
 SceneDescription phong_floor(double exponent) { return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4), phong(exponent)); }
 
 SceneDescription glass_cube(double ior) {
-    SceneDescription scene = path_traced({light(cube({}, 1, true), 1), made_of(cube({0.05, -0.1, 0.1}, 0.4, false), dielectric(ior)),
-                                          made_of(quad({-0.9, -0.8, -0.9}, {0, 0, 1.8}, {1.8, 0, 0}), diffuse(0.5))},
-                                         camera({0.2, 0.45, -0.95}, {0, -0.1, 0.1}, 60), 12);
+    SceneDescription scene =
+        path_traced({light(cube({}, 1, true), 1), made_of(cube({0.05, -0.1, 0.1}, 0.4, false), dielectric(ior)),
+                     made_of(quad({-0.9, -0.8, -0.9}, {0, 0, 1.8}, {1.8, 0, 0}), diffuse(0.5))},
+                    camera({0.2, 0.45, -0.95}, {0, -0.1, 0.1}, 60), 12);
     return moved(scene, 1, {});
 }
 
 // Paths are not cut short by chance, so that each sample is the sum of the series itself.
 SceneDescription furnace(double darkness, unsigned max_depth) { // 1 - albedo
-    SceneDescription scene = path_traced({made_of(cube({}, 1, true), diffuse(1 - darkness))}, camera({0.1, 0.2, -0.3}, {0.3, 0, 1}, 70), max_depth);
+    SceneDescription scene = path_traced({made_of(cube({}, 1, true), diffuse(1 - darkness))},
+                                         camera({0.1, 0.2, -0.3}, {0.3, 0, 1}, 70), max_depth);
     scene.meshes[0].radiance = Color{1, 1, 1};
     scene.strategy[AXIS_lighting] = CHOICE_lighting_bsdf;
     scene.strategy[AXIS_rr] = CHOICE_rr_off;
     return scene;
 }
-double furnace_truth(double darkness, unsigned max_depth) { // of the albedo in single precision, which is what the scene holds
+double furnace_truth(double darkness,
+                     unsigned max_depth) { // of the albedo in single precision, which is what the scene holds
     const double albedo = float(1 - darkness);
     return albedo < 1 ? -std::expm1(max_depth * std::log(albedo)) / (1 - albedo) : max_depth;
 }
@@ -103,7 +116,8 @@ SceneDescription clipped_near(double distance) {
 SceneDescription room_of(TriangleMesh walls) {
     SceneDescription scene = room();
     const TriangleMesh old = std::get<TriangleMesh>(scene.meshes[0].shape); // its corners say how the room is turned
-    const Vec3 o = old.positions[0], x = (old.positions[1] - o) * 0.5, y = (old.positions[2] - o) * 0.5, z = (old.positions[4] - o) * 0.5;
+    const Vec3 o = old.positions[0], x = (old.positions[1] - o) * 0.5, y = (old.positions[2] - o) * 0.5,
+               z = (old.positions[4] - o) * 0.5;
     for (Vec3 &p : walls.positions)
         p = o + x * (p.x + 1) + y * (p.y + 1) + z * (p.z + 1);
     scene.meshes[0].shape = walls;
@@ -123,10 +137,12 @@ SceneDescription with_copies(SceneDescription scene, double copies) {
             if (mesh.radiance || mesh.bsdf.record.kind == BSDF_dielectric)
                 continue;
             auto &triangles = std::get<TriangleMesh>(mesh.shape).triangles;
-            for (size_t t = 0; copy % 2 && t + 1 < triangles.size(); t += 2) { // both have their first corner and their cut in common
+            for (size_t t = 0; copy % 2 && t + 1 < triangles.size();
+                 t += 2) { // both have their first corner and their cut in common
                 const auto p = triangles[t], q = triangles[t + 1];
                 const bool forward = q[1].position == p[2].position;
-                const std::array around = forward ? std::array{p[0], p[1], p[2], q[2]} : std::array{p[0], q[1], p[1], p[2]};
+                const std::array around =
+                    forward ? std::array{p[0], p[1], p[2], q[2]} : std::array{p[0], q[1], p[1], p[2]};
                 triangles[t] = {around[1], around[2], around[3]};
                 triangles[t + 1] = {around[1], around[3], around[0]};
             }
@@ -138,7 +154,8 @@ SceneDescription room_of_copies(double copies) { return with_copies(room(), copi
 SceneDescription walls_of_copies(double copies) { return with_copies(closed_walls(), copies); }
 SceneDescription plane_of_copies(double copies) { return with_copies(open_plane(), copies); }
 
-// A light of triangles side by side whose widths grow from one to the next, over 12 decades of area; from 0 on, where floats are dense.
+// A light of triangles side by side whose widths grow from one to the next, over 12 decades of area; from 0 on, where
+// floats are dense.
 SceneDescription light_of_triangles(double count) {
     const unsigned n = unsigned(count);
     TriangleMesh strip;
@@ -160,7 +177,8 @@ SceneDescription many_lights(double count) {
     scene.meshes.pop_back();
     const int side = int(std::ceil(std::sqrt(count)));
     for (int i = 0; i < int(count); i++)
-        scene.meshes.push_back(lamp_over({(i % side + 0.5) / side * 2 - 1, 1, (i / side + 0.5) / side * 2 - 1}, 0.5 / side, 1 + i % 7));
+        scene.meshes.push_back(
+            lamp_over({(i % side + 0.5) / side * 2 - 1, 1, (i / side + 0.5) / side * 2 - 1}, 0.5 / side, 1 + i % 7));
     scene.strategy[AXIS_emitter_choice] = CHOICE_emitter_choice_power;
     return scene;
 }
@@ -187,64 +205,227 @@ SceneDescription room_by_sobol(double) {
 
 const std::vector<Row> &rows() {
     static const std::vector<Row> table = {
-        {.name = "scale", .stretched = "size of the scene", .values = decades(-6, 6), .start = 1, .promised_from = 1e-4, .promised_to = 1e4,
-         .picture = scaled(room), .invariant = true, .closed = scaled(closed_walls), .open = scaled(open_plane)},
-        {.name = "distance", .stretched = "distance from the origin, in sizes of the scene", .values = joined({0}, decades(0, 7)), .start = 0,
-         .promised_from = 0, .promised_to = 1e4, .picture = shifted(room), .invariant = true, .closed = shifted(closed_walls), .open = shifted(open_plane)},
-        {.name = "detail", .stretched = "size of what is looked at, the world having 1", .values = reversed(decades(-6, -1)), .start = 0.1,
-         .promised_from = 1e-3, .promised_to = 0.1, .picture = as_detail(room), .invariant = true, .closed = as_detail(closed_walls)},
-        {.name = "aspect", .stretched = "aspect of the triangles of closed walls", .values = decades(0, 7), .start = 1, .promised_from = 1,
-         .promised_to = 1e3, .picture = slivered_room, .invariant = true, .closed = slivered_walls},
-        {.name = "specks", .stretched = "area of triangles in the middle of those of closed walls, of theirs", .values = reversed(decades(-12, 0)),
-         .start = 1, .promised_from = 1e-12, .promised_to = 1, .picture = speckled_room, .invariant = true, .closed = speckled_walls},
-        {.name = "copies", .stretched = "coplanar copies of every wall, each cut along the other diagonal", .values = {1, 2, 3, 10, 30}, .start = 1,
-         .promised_from = 1, .promised_to = 30, .picture = room_of_copies, .invariant = true, .closed = walls_of_copies, .open = plane_of_copies},
-        {.name = "edges", .stretched = "size of closed meshes, turned and moved; rays at their edges and vertices", .values = decades(-6, 6, 2), .start = 1,
-         .promised_from = 1e-4, .promised_to = 1e4, .probe = probe_edges},
-        {.name = "light-size", .stretched = "side of a light at distance 1", .values = decades(-6, 3), .start = 1, .promised_from = 1e-4,
-         .promised_to = 1e2, .picture = light_of_size},
-        {.name = "light-distance", .stretched = "height of a light of side 1 over a floor", .values = decades(-6, 3), .start = 1, .promised_from = 1e-3,
-         .promised_to = 1e2, .picture = light_at_distance},
-        {.name = "light-edge-on", .stretched = "angle of a light's plane to the floor's, degrees", .values = reversed(decades(-5, 1)), .start = 10,
+        {.name = "scale",
+         .stretched = "size of the scene",
+         .values = decades(-6, 6),
+         .start = 1,
+         .promised_from = 1e-4,
+         .promised_to = 1e4,
+         .picture = scaled(room),
+         .invariant = true,
+         .closed = scaled(closed_walls),
+         .open = scaled(open_plane)},
+        {.name = "distance",
+         .stretched = "distance from the origin, in sizes of the scene",
+         .values = joined({0}, decades(0, 7)),
+         .start = 0,
+         .promised_from = 0,
+         .promised_to = 1e4,
+         .picture = shifted(room),
+         .invariant = true,
+         .closed = shifted(closed_walls),
+         .open = shifted(open_plane)},
+        {.name = "detail",
+         .stretched = "size of what is looked at, the world having 1",
+         .values = reversed(decades(-6, -1)),
+         .start = 0.1,
+         .promised_from = 1e-3,
+         .promised_to = 0.1,
+         .picture = as_detail(room),
+         .invariant = true,
+         .closed = as_detail(closed_walls)},
+        {.name = "aspect",
+         .stretched = "aspect of the triangles of closed walls",
+         .values = decades(0, 7),
+         .start = 1,
+         .promised_from = 1,
+         .promised_to = 1e3,
+         .picture = slivered_room,
+         .invariant = true,
+         .closed = slivered_walls},
+        {.name = "specks",
+         .stretched = "area of triangles in the middle of those of closed walls, of theirs",
+         .values = reversed(decades(-12, 0)),
+         .start = 1,
+         .promised_from = 1e-12,
+         .promised_to = 1,
+         .picture = speckled_room,
+         .invariant = true,
+         .closed = speckled_walls},
+        {.name = "copies",
+         .stretched = "coplanar copies of every wall, each cut along the other diagonal",
+         .values = {1, 2, 3, 10, 30},
+         .start = 1,
+         .promised_from = 1,
+         .promised_to = 30,
+         .picture = room_of_copies,
+         .invariant = true,
+         .closed = walls_of_copies,
+         .open = plane_of_copies},
+        {.name = "edges",
+         .stretched = "size of closed meshes, turned and moved; rays at their edges and vertices",
+         .values = decades(-6, 6, 2),
+         .start = 1,
+         .promised_from = 1e-4,
+         .promised_to = 1e4,
+         .probe = probe_edges},
+        {.name = "light-size",
+         .stretched = "side of a light at distance 1",
+         .values = decades(-6, 3),
+         .start = 1,
+         .promised_from = 1e-4,
+         .promised_to = 1e2,
+         .picture = light_of_size},
+        {.name = "light-distance",
+         .stretched = "height of a light of side 1 over a floor",
+         .values = decades(-6, 3),
+         .start = 1,
+         .promised_from = 1e-3,
+         .promised_to = 1e2,
+         .picture = light_at_distance},
+        {.name = "light-edge-on",
+         .stretched = "angle of a light's plane to the floor's, degrees",
+         .values = reversed(decades(-5, 1)),
+         .start = 10,
          .picture = light_edge_on},
-        {.name = "light-standing", .stretched = "gap between a floor and a light that stands on it", .values = joined(reversed(decades(-7, -1)), {0}),
-         .start = 0.1, .promised_from = 0, .promised_to = 0.1, .picture = light_standing},
-        {.name = "radiance", .stretched = "radiance of a light", .values = decades(-20, 20, 5), .start = 1, .promised_from = 1e-15, .promised_to = 1e15,
+        {.name = "light-standing",
+         .stretched = "gap between a floor and a light that stands on it",
+         .values = joined(reversed(decades(-7, -1)), {0}),
+         .start = 0.1,
+         .promised_from = 0,
+         .promised_to = 0.1,
+         .picture = light_standing},
+        {.name = "radiance",
+         .stretched = "radiance of a light",
+         .values = decades(-20, 20, 5),
+         .start = 1,
+         .promised_from = 1e-15,
+         .promised_to = 1e15,
          .picture = light_of_radiance},
-        {.name = "alpha", .stretched = "roughness of a microfacet floor", .values = reversed(decades(-6, 0)), .start = 1, .promised_from = 1e-4,
-         .promised_to = 1, .picture = rough_floor},
-        {.name = "grazing", .stretched = "angle of the view to a floor of roughness 0.1, degrees", .values = reversed(decades(-3, 1)), .start = 10,
+        {.name = "alpha",
+         .stretched = "roughness of a microfacet floor",
+         .values = reversed(decades(-6, 0)),
+         .start = 1,
+         .promised_from = 1e-4,
+         .promised_to = 1,
+         .picture = rough_floor},
+        {.name = "grazing",
+         .stretched = "angle of the view to a floor of roughness 0.1, degrees",
+         .values = reversed(decades(-3, 1)),
+         .start = 10,
          .picture = grazed_floor},
-        {.name = "phong", .stretched = "exponent", .values = joined({0}, decades(0, 8)), .start = 0, .promised_from = 0, .promised_to = 1e6,
+        {.name = "phong",
+         .stretched = "exponent",
+         .values = joined({0}, decades(0, 8)),
+         .start = 0,
+         .promised_from = 0,
+         .promised_to = 1e6,
          .picture = phong_floor},
-        {.name = "ior", .stretched = "index of a cube of glass", .values = {1 - 1e-6, 1, 1 + 1e-6, 1 + 1e-3, 1.5, 2, 10, 100}, .start = 1.5,
-         .promised_from = 1 - 1e-6, .promised_to = 100, .picture = glass_cube},
-        {.name = "critical-angle", .stretched = "sine of the angle beyond total reflection, ulp", .values = {-1e6, -1e5, -1e4, -1e3, -100, -10, -2, -1, 0, 1, 2, 10, 100},
-         .start = -1e6, .probe = probe_critical_angle},
-        {.name = "furnace", .stretched = "1 - albedo, all bounces; below 1e-4 the first 20000", .values = {1, 0.5, 0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-7, 0}, .start = 0.5,
-         .promised_from = 1e-4, .promised_to = 1, .picture = bright_furnace, .truth = [](double d) { return furnace_truth(d, all_bounces(d)); },
-         .tolerance = 1e-3, .side = 4, .spp = 4}, // a sum of 1e4 terms in one float; without roulette there is no noise to hide it in
-        {.name = "depth", .stretched = "segments of the longest path, albedo 0.9", .values = {1, 2, 10, 100, 65535, 65536, 1e6, 0x1p31, 4294967295.0}, .start = 10,
-         .promised_from = 1, .promised_to = 4294967295.0, .picture = deep_furnace, .truth = [](double d) { return furnace_truth(0.1, unsigned(d)); },
-         .side = 4, .spp = 4},
-        {.name = "fov", .stretched = "field of view, degrees", .values = joined(decades(-6, 1), {60, 120, 170, 179, 179.9}), .start = 60,
-         .promised_from = 1e-3, .promised_to = 170, .picture = seen_through},
-        {.name = "near-clip", .stretched = "nearClip", .values = {0.01, 1e-4, 1e-10, 1e-20, 1e-30, 1e-40, 0}, .start = 0.01, .promised_from = 0,
-         .promised_to = 0.01, .picture = clipped_near, .invariant = true},
-        {.name = "numbers", .stretched = "random number, through every warp, BSDF and light", .values = {0, 0x1p-32, 0x1p-24, 0.25, 0.5, 0.75, 1 - 0x1p-24},
-         .start = 0.25, .promised_from = 0, .promised_to = 1, .probe = probe_numbers},
-        {.name = "samplers", .stretched = "samples of a pixel, all samplers, their numbers from the first to the last",
-         .values = {1, 2, 3, 1 << 16, 1 << 24, 0x1p31 - 1, 0x1p32 - 1}, .start = 2, .promised_from = 1, .promised_to = 0x1p32 - 1, .probe = probe_samplers},
-        {.name = "late-samples", .stretched = "first of a pixel's samples, Sobol", .values = {0, 1 << 16, 1 << 24, 0x1p31, 0x1p32 - 65536}, .start = 0,
-         .promised_from = 0, .promised_to = 0x1p32 - 65536, .picture = room_by_sobol, .invariant = true, .value_is = Value::first_sample},
-        {.name = "light-triangles", .stretched = "triangle pairs of a light, areas over 12 decades", .values = joined(decades(0, 5), {5e5}), .start = 1,
-         .promised_from = 1, .promised_to = 5e5, .picture = light_of_triangles, .invariant = true},
-        {.name = "emitters", .stretched = "number of lights", .values = decades(0, 4), .start = 1, .promised_from = 1, .promised_to = 1e4,
+        {.name = "ior",
+         .stretched = "index of a cube of glass",
+         .values = {1 - 1e-6, 1, 1 + 1e-6, 1 + 1e-3, 1.5, 2, 10, 100},
+         .start = 1.5,
+         .promised_from = 1 - 1e-6,
+         .promised_to = 100,
+         .picture = glass_cube},
+        {.name = "critical-angle",
+         .stretched = "sine of the angle beyond total reflection, ulp",
+         .values = {-1e6, -1e5, -1e4, -1e3, -100, -10, -2, -1, 0, 1, 2, 10, 100},
+         .start = -1e6,
+         .probe = probe_critical_angle},
+        {.name = "furnace",
+         .stretched = "1 - albedo, all bounces; below 1e-4 the first 20000",
+         .values = {1, 0.5, 0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-7, 0},
+         .start = 0.5,
+         .promised_from = 1e-4,
+         .promised_to = 1,
+         .picture = bright_furnace,
+         .truth = [](double d) { return furnace_truth(d, all_bounces(d)); },
+         .tolerance = 1e-3,
+         .side = 4,
+         .spp = 4}, // a sum of 1e4 terms in one float; without roulette there is no noise to hide it in
+        {.name = "depth",
+         .stretched = "segments of the longest path, albedo 0.9",
+         .values = {1, 2, 10, 100, 65535, 65536, 1e6, 0x1p31, 4294967295.0},
+         .start = 10,
+         .promised_from = 1,
+         .promised_to = 4294967295.0,
+         .picture = deep_furnace,
+         .truth = [](double d) { return furnace_truth(0.1, unsigned(d)); },
+         .side = 4,
+         .spp = 4},
+        {.name = "fov",
+         .stretched = "field of view, degrees",
+         .values = joined(decades(-6, 1), {60, 120, 170, 179, 179.9}),
+         .start = 60,
+         .promised_from = 1e-3,
+         .promised_to = 170,
+         .picture = seen_through},
+        {.name = "near-clip",
+         .stretched = "nearClip",
+         .values = {0.01, 1e-4, 1e-10, 1e-20, 1e-30, 1e-40, 0},
+         .start = 0.01,
+         .promised_from = 0,
+         .promised_to = 0.01,
+         .picture = clipped_near,
+         .invariant = true},
+        {.name = "numbers",
+         .stretched = "random number, through every warp, BSDF and light",
+         .values = {0, 0x1p-32, 0x1p-24, 0.25, 0.5, 0.75, 1 - 0x1p-24},
+         .start = 0.25,
+         .promised_from = 0,
+         .promised_to = 1,
+         .probe = probe_numbers},
+        {.name = "samplers",
+         .stretched = "samples of a pixel, all samplers, their numbers from the first to the last",
+         .values = {1, 2, 3, 1 << 16, 1 << 24, 0x1p31 - 1, 0x1p32 - 1},
+         .start = 2,
+         .promised_from = 1,
+         .promised_to = 0x1p32 - 1,
+         .probe = probe_samplers},
+        {.name = "late-samples",
+         .stretched = "first of a pixel's samples, Sobol",
+         .values = {0, 1 << 16, 1 << 24, 0x1p31, 0x1p32 - 65536},
+         .start = 0,
+         .promised_from = 0,
+         .promised_to = 0x1p32 - 65536,
+         .picture = room_by_sobol,
+         .invariant = true,
+         .value_is = Value::first_sample},
+        {.name = "light-triangles",
+         .stretched = "triangle pairs of a light, areas over 12 decades",
+         .values = joined(decades(0, 5), {5e5}),
+         .start = 1,
+         .promised_from = 1,
+         .promised_to = 5e5,
+         .picture = light_of_triangles,
+         .invariant = true},
+        {.name = "emitters",
+         .stretched = "number of lights",
+         .values = decades(0, 4),
+         .start = 1,
+         .promised_from = 1,
+         .promised_to = 1e4,
          .picture = many_lights},
-        {.name = "height", .stretched = "height of a picture one pixel wide", .values = {1, 2, 255, 65535, 65536, 1e6}, .start = 1, .promised_from = 1,
-         .promised_to = 1e6, .picture = glowing_column, .truth = glow, .spp = 4, .value_is = Value::height},
-        {.name = "samples", .stretched = "samples of one pixel, all of 0.1", .values = {1, 1 << 10, 1 << 20, 1 << 24, 1 << 26}, .start = 1,
-         .promised_from = 1, .promised_to = 1 << 26, .picture = glowing_wall, .truth = glow, .value_is = Value::spp},
+        {.name = "height",
+         .stretched = "height of a picture one pixel wide",
+         .values = {1, 2, 255, 65535, 65536, 1e6},
+         .start = 1,
+         .promised_from = 1,
+         .promised_to = 1e6,
+         .picture = glowing_column,
+         .truth = glow,
+         .spp = 4,
+         .value_is = Value::height},
+        {.name = "samples",
+         .stretched = "samples of one pixel, all of 0.1",
+         .values = {1, 1 << 10, 1 << 20, 1 << 24, 1 << 26},
+         .start = 1,
+         .promised_from = 1,
+         .promised_to = 1 << 26,
+         .picture = glowing_wall,
+         .truth = glow,
+         .value_is = Value::spp},
     };
     return table;
 }

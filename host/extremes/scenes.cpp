@@ -6,7 +6,8 @@ namespace opal::extremes {
 
 namespace {
 
-const Transform turned = Transform::rotate({1, 2, 3}, 34) * Transform::rotate({0, 1, 0}, 21); // so that nothing is exact by chance
+const Transform turned =
+    Transform::rotate({1, 2, 3}, 34) * Transform::rotate({0, 1, 0}, 21); // so that nothing is exact by chance
 
 TriangleMesh moved(TriangleMesh mesh, const Transform &by) {
     for (Vec3 &p : mesh.positions)
@@ -16,7 +17,9 @@ TriangleMesh moved(TriangleMesh mesh, const Transform &by) {
     return mesh;
 }
 
-Parallelogram moved(const Parallelogram &p, const Transform &by) { return {by.point(p.origin), by.vector(p.u), by.vector(p.v)}; }
+Parallelogram moved(const Parallelogram &p, const Transform &by) {
+    return {by.point(p.origin), by.vector(p.u), by.vector(p.v)};
+}
 
 } // namespace
 
@@ -81,7 +84,8 @@ TriangleMesh cube(Vec3 center, double s, bool inwards) {
     std::vector<Vec3> corners;
     for (unsigned i = 0; i < 8; i++)
         corners.push_back(center + Vec3{i & 1 ? s : -s, i & 2 ? s : -s, i & 4 ? s : -s});
-    const unsigned faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}; // outwards
+    const unsigned faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                  {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}; // outwards
     std::vector<std::array<unsigned, 3>> triangles;
     for (const auto &f : faces)
         for (unsigned i : {1u, 2u})
@@ -99,7 +103,8 @@ TriangleMesh slivered_cube(double aspect) {
         for (unsigned side : {0u, 2u}) {
             const unsigned u = step[(axis + 1) % 3], v = step[(axis + 2) % 3];
             for (unsigned cell : {0u, u, v, u + v}) {
-                const unsigned a = side * step[axis] + cell, b = a + (side ? v : u), c = a + (side ? u : v), d = a + u + v; // inwards
+                const unsigned a = side * step[axis] + cell, b = a + (side ? v : u), c = a + (side ? u : v),
+                               d = a + u + v; // inwards
                 for (const auto &[x, y, z] : {std::array{a, b, d}, std::array{a, d, c}})
                     mesh.triangles.push_back({{{x, OPAL_NONE}, {y, OPAL_NONE}, {z, OPAL_NONE}}});
             }

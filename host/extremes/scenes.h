@@ -5,7 +5,8 @@
 
 namespace opal::extremes {
 
-// A camera at `from` that looks at `to`, with that full horizontal angle in degrees; box filter, the resolution set later.
+// A camera at `from` that looks at `to`, with that full horizontal angle in degrees; box filter, the resolution set
+// later.
 Camera camera(Vec3 from, Vec3 to, double fov);
 
 BsdfRecord diffuse(double albedo);
@@ -14,7 +15,7 @@ BsdfRecord phong(double exponent);
 BsdfRecord dielectric(double int_ior);
 
 TriangleMesh mesh_of(std::vector<Vec3> positions, std::vector<std::array<unsigned, 3>> triangles);
-TriangleMesh quad(Vec3 o, Vec3 u, Vec3 v);                            // faces u x v
+TriangleMesh quad(Vec3 o, Vec3 u, Vec3 v); // faces u x v
 TriangleMesh cube(Vec3 center, double half_side, bool inwards);
 // A cube of half side 1 that faces inwards, each side cut twice across, 1 / aspect from the edge.
 TriangleMesh slivered_cube(double aspect);
@@ -26,11 +27,13 @@ Mesh light(std::variant<TriangleMesh, Parallelogram> shape, double radiance); //
 // Path tracing with MIS and at most `max_depth` segments.
 SceneDescription path_traced(std::vector<Mesh> meshes, const Camera &camera, unsigned max_depth);
 
-// A closed room, no wall of which is parallel to an axis, with a light, a diffuse cube, a glossy floor and a pane of glass.
+// A closed room, no wall of which is parallel to an axis, with a light, a diffuse cube, a glossy floor and a pane of
+// glass.
 SceneDescription room();
 // Ambient occlusion within closed walls: every way out is blocked, so that all light is a leak.
 SceneDescription closed_walls();
-// Ambient occlusion of a plane that fills the view: nothing blocks anything, so that what is missing from 1 shadows itself.
+// Ambient occlusion of a plane that fills the view: nothing blocks anything, so that what is missing from 1 shadows
+// itself.
 SceneDescription open_plane();
 // Ambient occlusion instead of the scene's strategy.
 SceneDescription occlusion_of(SceneDescription scene);

@@ -89,7 +89,8 @@ public:
 
     Decision large_tree() const {
         const std::size_t bytes = scene.nodes.size() * sizeof(BvhNode) + scene.blocks.size() * sizeof(TriangleBlock);
-        return {tree().on && bytes > LARGE_TREE, fmt::format("{:.1f} MiB of nodes and triangles", double(bytes) / (1 << 20))};
+        return {tree().on && bytes > LARGE_TREE,
+                fmt::format("{:.1f} MiB of nodes and triangles", double(bytes) / (1 << 20))};
     }
 
     Decision wide_filter() const {

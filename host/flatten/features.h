@@ -11,8 +11,8 @@ constexpr int LISTED_LANES = 4; // from this width on testing each of a few tria
 // -1.
 Features find_features(const SceneDescription &description, const FlatScene &scene, int lanes);
 
-// Of one kernel that renders every scene given (variants of one scene): a feature that any needs is on, and an axis on which
-// they differ is decided at run time.
+// Of one kernel that renders every scene given (variants of one scene): a feature that any needs is on, and an axis on
+// which they differ is decided at run time.
 Features shared_features(const std::vector<FlatScene> &scenes);
 
 } // namespace opal

@@ -14,15 +14,15 @@
 namespace opal {
 
 struct Feature {
-    std::string name;   // "tree" -> OPAL_HAS_tree
+    std::string name; // "tree" -> OPAL_HAS_tree
     bool on = false;
     std::string reason; // "36 triangles: each against all lanes is faster"
 };
 
 // What decides the program text (DESIGN section 4): features as 0 or 1, axes as a CHOICE_* or -1 (decided at run time).
 struct Features {
-    std::vector<Feature> list;              // in the order of OPAL_FEATURES
-    std::array<int, AXIS_COUNT> axes{};     // CHOICE_* or -1
+    std::vector<Feature> list;          // in the order of OPAL_FEATURES
+    std::array<int, AXIS_COUNT> axes{}; // CHOICE_* or -1
     std::array<std::string, AXIS_COUNT> axis_reasons;
     bool operator[](std::string_view name) const;
 };
@@ -34,20 +34,20 @@ struct FlatScene {
     double scale = 1;
 
     Settings settings{};
-    std::vector<BvhNode> nodes;             // empty: no tree
+    std::vector<BvhNode> nodes; // empty: no tree
     std::vector<TriangleBlock> blocks;
     std::vector<Triangle> triangles;
-    std::vector<float> normals;             // 3 each
-    std::vector<float> listed_vertices;     // 3 each, distinct
-    std::vector<ListedFace> listed_faces;   // beside the tree
-    uint listed_triangles = 0;              // that these faces stand for
+    std::vector<float> normals;           // 3 each
+    std::vector<float> listed_vertices;   // 3 each, distinct
+    std::vector<ListedFace> listed_faces; // beside the tree
+    uint listed_triangles = 0;            // that these faces stand for
     std::vector<MeshRecord> meshes;
-    std::vector<BsdfRecord> bsdfs;          // equal records are shared
+    std::vector<BsdfRecord> bsdfs; // equal records are shared
     std::vector<EmitterRecord> emitters;
     std::vector<LightTriangle> light_triangles;
     Features features;
 
-    double sah_cost = 0;                    // of the tree, in triangle block tests and node visits
+    double sah_cost = 0; // of the tree, in triangle block tests and node visits
     double bvh_seconds = 0;
 };
 

@@ -1,8 +1,8 @@
 #include "flatten/distribution.h"
 #include "flatten/emitters.h"
+#include "flatten/face_list.h"
 #include "flatten/features.h"
 #include "flatten/geometry.h"
-#include "flatten/listed.h"
 
 #include <algorithm>
 #include <chrono>
@@ -78,8 +78,8 @@ void gather_bsdfs(const SceneDescription &description, FlatScene &scene) {
 }
 
 // Point lights and the corners of triangles that emit: all rays to light end in one of these points or between them.
-std::vector<std::array<float, 3>> light_points(const SceneDescription &description, const Frame &frame, const TriangleSoup &soup,
-                                               const std::vector<Triangle> &triangles) {
+std::vector<std::array<float, 3>> light_points(const SceneDescription &description, const Frame &frame,
+                                               const TriangleSoup &soup, const std::vector<Triangle> &triangles) {
     std::vector<std::array<float, 3>> points;
     for (const PointLight &light : description.point_lights)
         points.push_back(frame(light.position));
@@ -90,10 +90,12 @@ std::vector<std::array<float, 3>> light_points(const SceneDescription &descripti
     return points;
 }
 
-void build_acceleration(TriangleSoup &soup, const std::vector<std::array<float, 3>> &lights, bool with_listed, FlatScene &scene) {
+void build_acceleration(TriangleSoup &soup, const std::vector<std::array<float, 3>> &lights, bool with_listed,
+                        FlatScene &scene) {
     const auto start = std::chrono::steady_clock::now();
     const std::vector<uint> ids = choose_listed(soup);
-    std::vector<Face> listed = pair_up(ids, soup, scene.triangles); // at all widths, so that the same numbers pick the same points of lights
+    std::vector<Face> listed =
+        pair_up(ids, soup, scene.triangles); // at all widths, so that the same numbers pick the same points of lights
     if (!with_listed)
         listed.clear();
     if (listed.empty() || ids.size() < soup.corners.size())
@@ -113,7 +115,8 @@ FlatScene flatten(const SceneDescription &description, int lanes) {
     fill_strategy(description, frame, scene.settings);
     gather_bsdfs(description, scene);
     TriangleSoup soup = gather_triangles(description, frame, scene);
-    build_acceleration(soup, light_points(description, frame, soup, scene.triangles), lanes >= LISTED_LANES && description.strategy.specialise, scene);
+    build_acceleration(soup, light_points(description, frame, soup, scene.triangles),
+                       lanes >= LISTED_LANES && description.strategy.specialise, scene);
     gather_emitters(description, frame, soup, scene);
     scene.settings.emitter_count = uint(scene.emitters.size());
     scene.features = find_features(description, scene, lanes);

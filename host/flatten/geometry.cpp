@@ -154,11 +154,4 @@ TriangleSoup gather_triangles(const SceneDescription &description, const Frame &
     return std::move(gatherer.soup);
 }
 
-Vec3 normal_of(const std::array<float, 3> &a, const std::array<float, 3> &b, const std::array<float, 3> &c) {
-    const auto edge = [&a](const std::array<float, 3> &p) {
-        return Vec3{double(p[0]) - a[0], double(p[1]) - a[1], double(p[2]) - a[2]};
-    };
-    return cross(edge(b), edge(c));
-}
-
 } // namespace opal

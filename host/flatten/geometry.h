@@ -1,7 +1,8 @@
 // From meshes in world space and double precision to triangles of floats around the origin.
 #pragma once
 
-#include "flatten/bvh.h"
+#include "bvh/box.h"
+#include "bvh/bvh.h"
 #include "flatten/flat_scene.h"
 
 namespace opal {
@@ -15,7 +16,7 @@ struct Extent {
     Vec3 middle() const { return lo * 0.5 + hi * 0.5; }
     double longest_side() const; // 0 where empty
 };
-Extent extent_of(const Mesh &mesh); // a position that no triangle uses does not count
+Extent extent_of(const Mesh &mesh);              // a position that no triangle uses does not count
 Extent extent_of(const SceneDescription &scene); // all meshes and point lights
 
 // The map from world positions to flattened ones; distances grow by `scale`, areas by its square.
@@ -32,8 +33,5 @@ Frame find_frame(const SceneDescription &scene);
 // Fills scene.triangles and scene.normals, and returns the positions. Triangles that the rounding to float leaves
 // without a normal are left out, with a warning that counts them.
 TriangleSoup gather_triangles(const SceneDescription &description, const Frame &frame, FlatScene &scene);
-
-// (b - a) x (c - a), exact but for the rounding of double; its length is twice the area.
-Vec3 normal_of(const std::array<float, 3> &a, const std::array<float, 3> &b, const std::array<float, 3> &c);
 
 } // namespace opal

@@ -65,7 +65,8 @@ private:
 Imf::Slice slice_of(const float *values, int width, const Imath::Box2i &window) {
     char *first = reinterpret_cast<char *>(const_cast<float *>(values));
     const std::ptrdiff_t before = window.min.x + std::ptrdiff_t(window.min.y) * width;
-    return Imf::Slice(Imf::FLOAT, first - before * std::ptrdiff_t(sizeof(float)), sizeof(float), sizeof(float) * size_t(width));
+    return Imf::Slice(Imf::FLOAT, first - before * std::ptrdiff_t(sizeof(float)), sizeof(float),
+                      sizeof(float) * size_t(width));
 }
 
 std::string exr_bytes(const Image &image) {

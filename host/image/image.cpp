@@ -10,7 +10,8 @@
 namespace opal {
 
 const Layer *Image::find(const std::string &name) const {
-    const auto found = std::find_if(layers.begin(), layers.end(), [&](const Layer &layer) { return layer.name == name; });
+    const auto found =
+        std::find_if(layers.begin(), layers.end(), [&](const Layer &layer) { return layer.name == name; });
     return found == layers.end() ? nullptr : &*found;
 }
 

@@ -9,8 +9,8 @@
 namespace opal {
 
 struct Layer {
-    std::string name;           // "R", "G", "B", "variance.R", ...
-    std::vector<float> values;  // width * height, top row first
+    std::string name;          // "R", "G", "B", "variance.R", ...
+    std::vector<float> values; // width * height, top row first
 };
 
 struct Image {
@@ -18,12 +18,12 @@ struct Image {
     std::vector<Layer> layers;
     std::map<std::string, std::string> metadata; // string attributes of the EXR header
 
-    const Layer *find(const std::string &name) const; // nullptr where there is none
-    const Layer &get(const std::string &name) const;  // Error naming the layers there are
+    const Layer *find(const std::string &name) const;  // nullptr where there is none
+    const Layer &get(const std::string &name) const;   // Error naming the layers there are
     double number(const std::string &attribute) const; // of the metadata; 0 where it is missing or no number
 };
 
-Image read_exr(const std::filesystem::path &file);                    // every float or half channel
+Image read_exr(const std::filesystem::path &file);                     // every float or half channel
 void write_exr(const Image &image, const std::filesystem::path &file); // float32, beside and then renamed
 // R, G, B with the exact sRGB curve (IEC 61966-2-1), clamped and rounded to 8 bits; what is not finite becomes magenta.
 void write_png(const Image &image, const std::filesystem::path &file);

@@ -17,7 +17,9 @@ using Pixel = std::array<double, 3>;
 class Pixels {
 public:
     explicit Pixels(const Image &image) : channels_{&image.get("R"), &image.get("G"), &image.get("B")} {}
-    Pixel operator[](size_t i) const { return {channels_[0]->values[i], channels_[1]->values[i], channels_[2]->values[i]}; }
+    Pixel operator[](size_t i) const {
+        return {channels_[0]->values[i], channels_[1]->values[i], channels_[2]->values[i]};
+    }
     size_t size() const { return channels_[0]->values.size(); }
 
 private:

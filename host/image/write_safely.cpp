@@ -52,7 +52,9 @@ int write_and_close(int descriptor, const std::string &bytes) {
     return close(descriptor) != 0 && error == 0 ? errno : error;
 }
 
-int open_new(const fs::path &temporary) { return open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666); }
+int open_new(const fs::path &temporary) {
+    return open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+}
 
 void check_folder(const fs::path &file) {
     const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();

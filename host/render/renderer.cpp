@@ -1,6 +1,6 @@
 #include "render/renderer.h"
 
-#include "render/scene_buffers.h"
+#include "device/scene_buffers.h"
 
 #include <algorithm>
 #include <chrono>
@@ -30,8 +30,8 @@ std::vector<unsigned> spread_order(unsigned count) {
 
 } // namespace
 
-// CPU: tiles of 8 x 8 pixels, which keep 16 lanes full for long, and enough work-items for all cores even for one pixel.
-// GPU: a pixel a work-item, as many as it has room for.
+// CPU: tiles of 8 x 8 pixels, which keep 16 lanes full for long, and enough work-items for all cores even for one
+// pixel. GPU: a pixel a work-item, as many as it has room for.
 Renderer::Shape Renderer::shape_of_launches() const {
     const bool gpu = device_.info.type == "gpu";
     Shape s{};
@@ -54,10 +54,11 @@ Renderer::Renderer(const Device &device, const FlatScene &scene, const RenderOpt
     slot_samples_ = unsigned(std::clamp<unsigned long long>(most / slot_bytes / pixels_, 1, 64ull * most_chunks));
     check_room(device, pixels_ * (slot_bytes * slot_samples_ + 4ull * film_planes + 4), "the film and its samples");
 
-    const cl::Program program =
-        build_program(device, program_text(scene.features, options.build, *options.sources), options.build, &compile_seconds_);
+    const cl::Program program = build_program(device, program_text(scene.features, options.build, *options.sources),
+                                              options.build, &compile_seconds_);
     scene_ = upload_scene(device, scene);
-    slots_ = make_buffer(device, CL_MEM_READ_WRITE, pixels_ * slot_bytes * slot_samples_, nullptr, "the samples of a pass");
+    slots_ =
+        make_buffer(device, CL_MEM_READ_WRITE, pixels_ * slot_bytes * slot_samples_, nullptr, "the samples of a pass");
     film_ = make_zeros<float>(device, pixels_ * film_planes, "the film");
     counts_ = make_zeros<cl_uint>(device, pixels_, "the film's sample counts");
     invalid_ = make_zeros<cl_uint>(device, 1 + 2 * invalid_records, "the list of invalid samples");
@@ -109,7 +110,8 @@ void Renderer::restart(unsigned seed, unsigned first_sample) {
 double Renderer::launch(const cl::Kernel &kernel, unsigned items) {
     cl::Event event;
     const unsigned padded = ceil_div(items, shape_.local_size) * shape_.local_size;
-    device_.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(padded), cl::NDRange(shape_.local_size), nullptr, &event);
+    device_.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(padded), cl::NDRange(shape_.local_size),
+                                       nullptr, &event);
     event.wait();
     const double seconds = 1e-9 * double(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
                                          event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
@@ -131,8 +133,8 @@ unsigned Renderer::next_pass_samples(unsigned left) const {
 }
 
 void Renderer::set_pass_arguments(cl::Kernel &kernel, cl_uint place, unsigned chunk_samples, unsigned pass_samples) {
-    for (unsigned value : {shape_.tiles * shape_.chunks, shape_.tile_width, shape_.tile_height, shape_.chunks, chunk_samples,
-                           next_, pass_samples})
+    for (unsigned value : {shape_.tiles * shape_.chunks, shape_.tile_width, shape_.tile_height, shape_.chunks,
+                           chunk_samples, next_, pass_samples})
         kernel.setArg(place++, cl_uint(value));
 }
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "device/program.h"
+#include "film/film.h"
 #include "flatten/flat_scene.h"
-#include "render/film.h"
 
 #include <functional>
 
@@ -22,7 +22,8 @@ public:
     // Compiles the program and uploads the scene. Error: what does not build or fit.
     Renderer(const Device &device, const FlatScene &scene, const RenderOptions &options);
 
-    // Asked after each launch with the samples a pixel (a fraction within a pass) and the kernel seconds so far; false stops.
+    // Asked after each launch with the samples a pixel (a fraction within a pass) and the kernel seconds so far; false
+    // stops.
     using Continue = std::function<bool(double samples_done, double kernel_seconds)>;
 
     // Adds samples [next_sample(), end) of each pixel to the film; true when all were added. When stopped, what the
@@ -35,7 +36,7 @@ public:
 
     Film film() const;
     unsigned next_sample() const { return next_; }
-    double kernel_seconds() const { return kernel_seconds_; }   // of all launches since the last restart
+    double kernel_seconds() const { return kernel_seconds_; } // of all launches since the last restart
     double compile_seconds() const { return compile_seconds_; }
 
 private:

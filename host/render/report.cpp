@@ -44,7 +44,11 @@ json report_json(const SceneDescription &scene, const DeviceInfo &device, int la
     for (const InvalidSample &p : film.invalid_places)
         j["invalid_places"].push_back({{"x", p.x}, {"y", p.y}, {"sample", p.sample}});
     j["samples_per_second"] = seconds.render > 0 ? double(s.samples + s.invalid) / seconds.render : 0;
-    j["seconds"] = {{"load", seconds.load}, {"bvh", seconds.bvh}, {"compile", seconds.compile}, {"render", seconds.render}, {"write", seconds.write}};
+    j["seconds"] = {{"load", seconds.load},
+                    {"bvh", seconds.bvh},
+                    {"compile", seconds.compile},
+                    {"render", seconds.render},
+                    {"write", seconds.write}};
     j["warnings"] = warnings();
     j["version"] = OPAL_VERSION;
     return j;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "device/context.h"
-#include "render/film.h"
+#include "film/film.h"
 #include "scene/scene.h"
 
 #include <nlohmann/json.hpp>
@@ -16,8 +16,8 @@ struct RenderSeconds {
 // One key an axis, as the command line names choices, and the numbers that go with them.
 nlohmann::json strategy_json(const SceneDescription &scene);
 
-nlohmann::json report_json(const SceneDescription &scene, const DeviceInfo &device, int lanes, unsigned seed, const Film &film,
-                           const RenderSeconds &seconds);
+nlohmann::json report_json(const SceneDescription &scene, const DeviceInfo &device, int lanes, unsigned seed,
+                           const Film &film, const RenderSeconds &seconds);
 
 // The same as header attributes of an image.
 void add_metadata(Image &image, const nlohmann::json &report, const std::string &command_line);

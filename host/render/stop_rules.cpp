@@ -21,7 +21,8 @@ double samples_for(const FilmStatistics &pilot, double spp, double relative_erro
     return std::max(2.0, std::ceil(margin * spp * relative * relative)); // 2: so that there is a variance to state
 }
 
-Stopped render_until(Renderer &renderer, const StopRule &rule, unsigned seed, unsigned most, const Renderer::Continue &go_on) {
+Stopped render_until(Renderer &renderer, const StopRule &rule, unsigned seed, unsigned most,
+                     const Renderer::Continue &go_on) {
     Stopped stopped{most};
     if (rule.relative_error > 0) {
         double needed;

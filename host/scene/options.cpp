@@ -1,8 +1,7 @@
 #include "scene/options.h"
 
 #include "base/table.h"
-#include "scene/load.h"
-#include "scene/values.h"
+#include "base/values.h"
 
 #include <algorithm>
 

@@ -4,6 +4,7 @@
 
 #include "scene/strategy.h"
 
+#include <map>
 #include <span>
 #include <string>
 
@@ -32,5 +33,9 @@ struct IntegratorType {
 std::span<const IntegratorType> integrator_types();
 const IntegratorType &find_integrator(const std::string &name); // '-' and '_' are alike; Error "unknown integrator ..."
 void apply_integrator(Strategy &strategy, const IntegratorType &type);
+
+// Sets options by name ("lighting" -> "mis", "max-depth" -> "5"), as the command line overrides what a scene says.
+// Throws Error where a name or a value does not exist.
+void override_strategy(Strategy &strategy, const std::map<std::string, std::string> &overrides);
 
 } // namespace opal

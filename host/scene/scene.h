@@ -30,10 +30,12 @@ struct Bsdf {
 };
 
 struct TriangleMesh {
-    std::vector<Vec3> positions;                      // world space
-    std::vector<Vec3> normals;                        // world space, unit; may be empty
-    struct Corner { unsigned position, normal; };     // normal = OPAL_NONE: geometric
-    std::vector<std::array<Corner, 3>> triangles;     // degenerate ones already dropped
+    std::vector<Vec3> positions; // world space
+    std::vector<Vec3> normals;   // world space, unit; may be empty
+    struct Corner {
+        unsigned position, normal;
+    };                                            // normal = OPAL_NONE: geometric
+    std::vector<std::array<Corner, 3>> triangles; // degenerate ones already dropped
 };
 
 struct Parallelogram {
@@ -41,10 +43,10 @@ struct Parallelogram {
 };
 
 struct Mesh {
-    std::string name;                                  // file name or given name
+    std::string name; // file name or given name
     std::variant<TriangleMesh, Parallelogram> shape;
     Bsdf bsdf;
-    std::optional<Color> radiance;                     // of its area emitter, W / (m^2 sr)
+    std::optional<Color> radiance; // of its area emitter, W / (m^2 sr)
     SourcePlace place;
 };
 
@@ -80,7 +82,7 @@ struct SceneDescription {
     std::vector<Mesh> meshes;
     std::vector<PointLight> point_lights;
     std::string integrator_type = "path_mis"; // as written, e.g. path_tracer_recursive; path_mis where there is none
-    bool university_dialect = false;           // that type is the 2022 course's: without <rfilter> the filter is a box
+    bool university_dialect = false;          // that type is the 2022 course's: without <rfilter> the filter is a box
     Strategy strategy;
     bool normals_signed = false;
     SimpleLight simple_light;

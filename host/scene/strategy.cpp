@@ -25,9 +25,10 @@ std::span<const Axis> axes() {
 }
 
 std::span<const MathModeRow> math_modes() {
-    static const MathModeRow table[] = {{"precise", "single precision, as IEEE 754 has it"},
-                                        {"fast", "single precision, relaxed math and native functions"},
-                                        {"double", "double precision: the oracle that single precision is held against (opal extremes)"}};
+    static const MathModeRow table[] = {
+        {"precise", "single precision, as IEEE 754 has it"},
+        {"fast", "single precision, relaxed math and native functions"},
+        {"double", "double precision: the oracle that single precision is held against (opal extremes)"}};
     return table;
 }
 

@@ -21,13 +21,15 @@ struct Axis {
     std::span<const Choice> choices; // index = CHOICE_* value
 };
 
-std::span<const Axis> axes();                                // index = AXIS_* value
-int find_choice(int axis, std::string_view name);            // throws Error "unknown mis 'x'; available: balance, ..."
+std::span<const Axis> axes();                     // index = AXIS_* value
+int find_choice(int axis, std::string_view name); // throws Error "unknown mis 'x'; available: balance, ..."
 
 enum class MathMode { precise, fast, double_precision };
 
 // As typed (--math), indexed by MathMode.
-struct MathModeRow { std::string name, help; };
+struct MathModeRow {
+    std::string name, help;
+};
 std::span<const MathModeRow> math_modes();
 inline const std::string &name_of(MathMode mode) { return math_modes()[static_cast<std::size_t>(mode)].name; }
 
@@ -39,7 +41,7 @@ struct Strategy {
     unsigned rr_depth = 3;                 // roulette from this many segments on
     unsigned max_depth = no_limit;         // segments of the longest path
     MathMode math = MathMode::precise;
-    int lanes = 0;                         // 0: the device's width
+    int lanes = 0; // 0: the device's width
     bool specialise = true;
 
     int operator[](int axis) const { return choices[axis]; }

@@ -212,7 +212,12 @@ TileTest tile_test(const Estimate &a, const Estimate &b, const TileOptions &opti
     size_t tiles = boxes.size();
     double smallest = 1;
     for (size_t channel = 0; channel < t.channels; ++channel) {
-        const Channel both{a, b, channel, quantum_of(a, channel), quantum_of(b, channel), relative_variance_of(a, channel, boxes),
+        const Channel both{a,
+                           b,
+                           channel,
+                           quantum_of(a, channel),
+                           quantum_of(b, channel),
+                           relative_variance_of(a, channel, boxes),
                            relative_variance_of(b, channel, boxes)};
         const PixelBox everything{0, 0, a.width, a.height};
         t.whole.push_back(judge(sum_box(a, channel, everything), sum_box(b, channel, everything), options));

@@ -59,14 +59,16 @@ struct TileTest {
 
 // For each tile t = (sum a - sum b) / sqrt(sum va + sum vb) with Welch's degrees of freedom over all its pixels.
 //
-// Light that comes by rare samples (a sliver of a lamp, a caustic) may miss a whole tile, which then states an error that is too
-// small. So for tiles (not for the whole image) an estimate's variance is taken to be at least
-//  - that of the other image's samples there in this one's number, where both sample counts are known (where they are the same
+// Light that comes by rare samples (a sliver of a lamp, a caustic) may miss a whole tile, which then states an error
+// that is too small. So for tiles (not for the whole image) an estimate's variance is taken to be at least
+//  - that of the other image's samples there in this one's number, where both sample counts are known (where they are
+//  the same
 //    this widens the error by sqrt 2 at the most);
-//  - where the estimate has fewer than `sure_hits` effective hits, (mean / error)^2: mean * quantum, the variance of rare hits as
+//  - where the estimate has fewer than `sure_hits` effective hits, (mean / error)^2: mean * quantum, the variance of
+//  rare hits as
 //    large as this image's own are (quantum = sum of its variances / sum of its means), with the larger of both means;
-// and to the darker one's is added the variance that what it lacks would have, if it came by hits as large beside the light around
-// them as this image's are: a deficit counts where such hits should have come, and did not.
+// and to the darker one's is added the variance that what it lacks would have, if it came by hits as large beside the
+// light around them as this image's are: a deficit counts where such hits should have come, and did not.
 TileTest tile_test(const Estimate &a, const Estimate &b, const TileOptions &options = {});
 
 } // namespace opal::stats

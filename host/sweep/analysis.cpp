@@ -50,7 +50,8 @@ stats::Interval slope_of(const StrategyRecord &s) {
                 spp.push_back(p.spp);
                 mse.push_back(p.replicates[r].mse);
             }
-        if (const double slope = stats::fit_log_log(spp, mse, {}, sweep_confidence).slope.estimate; std::isfinite(slope))
+        if (const double slope = stats::fit_log_log(spp, mse, {}, sweep_confidence).slope.estimate;
+            std::isfinite(slope))
             slopes.add(slope);
     }
     return stats::mean_interval(slopes.sample(), sweep_confidence);
@@ -63,8 +64,8 @@ void judge_bias(StrategySummary &s, const Point &largest, const ReferenceRecord 
     const double own = means.variance / means.n, other = reference.stderr_luminance * reference.stderr_luminance;
     const double difference = means.mean - reference.mean_luminance;
     s.bias = difference / reference.mean_luminance;
-    s.bias_p = stats::difference_test(difference, std::sqrt(own + other), stats::welch_dof(own, means.n - 1, other, INFINITY),
-                                      reference.mean_luminance)
+    s.bias_p = stats::difference_test(difference, std::sqrt(own + other),
+                                      stats::welch_dof(own, means.n - 1, other, INFINITY), reference.mean_luminance)
                    .p_value;
 }
 
@@ -85,7 +86,9 @@ SweepSummary summarise(const SweepRecord &record) {
         StrategySummary s;
         s.record = &r;
         for (const Point &p : r.points) {
-            const auto mean = [&](double Replicate::*f) { return sample_of(p, [f](const Replicate &x) { return x.*f; }); };
+            const auto mean = [&](double Replicate::*f) {
+                return sample_of(p, [f](const Replicate &x) { return x.*f; });
+            };
             s.points.push_back({p.spp, p.replicates.size(), mean(&Replicate::seconds).mean,
                                 stats::positive_mean_interval(mean(&Replicate::mse), sweep_confidence),
                                 stats::positive_mean_interval(mean(&Replicate::rel_mse), sweep_confidence)});
@@ -96,10 +99,13 @@ SweepSummary summarise(const SweepRecord &record) {
         summary.strategies.push_back(std::move(s));
     }
     std::vector<StrategySummary> &all = summary.strategies;
-    const auto cheaper = [](const StrategySummary &a, const StrategySummary &b) { return a.cost.estimate < b.cost.estimate; };
+    const auto cheaper = [](const StrategySummary &a, const StrategySummary &b) {
+        return a.cost.estimate < b.cost.estimate;
+    };
     summary.best = size_t(std::min_element(all.begin(), all.end(), cheaper) - all.begin());
     for (StrategySummary &s : all) {
-        const Point &own = s.record->points.back(), &first = all[0].record->points.back(), &best = all[summary.best].record->points.back();
+        const Point &own = s.record->points.back(), &first = all[0].record->points.back(),
+                    &best = all[summary.best].record->points.back();
         s.slower = ratio_of(own, best, rel_mse_seconds);
         s.efficiency = ratio_of(first, own, mse_seconds);
         s.rel_efficiency = ratio_of(first, own, rel_mse_seconds);
@@ -115,12 +121,20 @@ nlohmann::json json_of(const SweepSummary &summary) {
     const auto interval = [](const stats::Interval &i) { return nlohmann::json{i.estimate, i.low, i.high}; };
     nlohmann::json list = nlohmann::json::array();
     for (const StrategySummary &s : summary.strategies) {
-        nlohmann::json j = {{"name", s.record->name}, {"slope", interval(s.slope)}, {"seconds_to_rel_mse_1_percent", interval(s.time_to(0.01))},
-                            {"time_relative_to_best", interval(s.slower)}, {"efficiency_relative_to_first", interval(s.efficiency)},
+        nlohmann::json j = {{"name", s.record->name},
+                            {"slope", interval(s.slope)},
+                            {"seconds_to_rel_mse_1_percent", interval(s.time_to(0.01))},
+                            {"time_relative_to_best", interval(s.slower)},
+                            {"efficiency_relative_to_first", interval(s.efficiency)},
                             {"rel_mse_efficiency_relative_to_first", interval(s.rel_efficiency)},
-                            {"bias", s.bias}, {"bias_p", s.bias_p}};
+                            {"bias", s.bias},
+                            {"bias_p", s.bias_p}};
         for (const PointSummary &p : s.points)
-            j["points"].push_back({{"spp", p.spp}, {"replicates", p.replicates}, {"seconds", p.seconds}, {"mse", interval(p.mse)}, {"rel_mse", interval(p.rel_mse)}});
+            j["points"].push_back({{"spp", p.spp},
+                                   {"replicates", p.replicates},
+                                   {"seconds", p.seconds},
+                                   {"mse", interval(p.mse)},
+                                   {"rel_mse", interval(p.rel_mse)}});
         list.push_back(j);
     }
     return list;
@@ -130,8 +144,9 @@ std::string csv(const SweepSummary &summary) {
     std::string text = "strategy,spp,replicates,seconds,mse,mse_low,mse_high,rel_mse,rel_mse_low,rel_mse_high\n";
     for (const StrategySummary &s : summary.strategies)
         for (const PointSummary &p : s.points)
-            text += fmt::format("\"{}\",{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", s.record->name, p.spp, p.replicates,
-                                p.seconds, p.mse.estimate, p.mse.low, p.mse.high, p.rel_mse.estimate, p.rel_mse.low, p.rel_mse.high);
+            text += fmt::format("\"{}\",{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", s.record->name,
+                                p.spp, p.replicates, p.seconds, p.mse.estimate, p.mse.low, p.mse.high,
+                                p.rel_mse.estimate, p.rel_mse.low, p.rel_mse.high);
     return text;
 }
 

@@ -26,7 +26,8 @@ struct StrategySummary {
     stats::Interval efficiency;       // 1 / (MSE x seconds), relative to the baseline's
     stats::Interval rel_efficiency;   // the same of relMSE
     double bias = 0, bias_p = 1;      // of the mean luminance, relative; Welch's test against the reference
-    stats::Interval time_to(double rel_mse) const; // seconds; an estimate alone (infinite interval) for dependent samples
+    stats::Interval
+    time_to(double rel_mse) const; // seconds; an estimate alone (infinite interval) for dependent samples
 };
 
 struct SweepSummary {
@@ -36,6 +37,7 @@ struct SweepSummary {
 
 SweepSummary summarise(const SweepRecord &record);
 std::string csv(const SweepSummary &summary); // one line a point
-nlohmann::json json_of(const SweepSummary &summary); // an interval is [estimate, low, high], null where infinite or unknown
+nlohmann::json
+json_of(const SweepSummary &summary); // an interval is [estimate, low, high], null where infinite or unknown
 
 } // namespace opal

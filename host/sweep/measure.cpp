@@ -36,7 +36,8 @@ Measured::Rendered Measured::render(unsigned spp, unsigned seed, unsigned first)
     const std::clock_t before = std::clock();
     if (!renderer_->render(first + spp, [](double, double) { return !interrupted(); }))
         throw Interrupted{};
-    const double cpu_seconds = double(std::clock() - before) / CLOCKS_PER_SEC / std::max(1u, device_.info.compute_units);
+    const double cpu_seconds =
+        double(std::clock() - before) / CLOCKS_PER_SEC / std::max(1u, device_.info.compute_units);
     Rendered rendered{renderer_->film(), {}, clock_ == Clock::cpu ? cpu_seconds : renderer_->kernel_seconds()};
     rendered.image = image_of(rendered.film, false);
     return rendered;
@@ -63,7 +64,8 @@ Pilot run_pilot(Measured &measured, unsigned seed, double seconds) {
     }
     Pilot pilot{spp, r.seconds / spp, {}, {}, measured.takes_both()};
     for (size_t p = 0; p < r.film.sum.size(); p++) {
-        const double n = std::fmax(2, r.film.count[p]), sum = luminance(r.film.sum[p][0], r.film.sum[p][1], r.film.sum[p][2]);
+        const double n = std::fmax(2, r.film.count[p]),
+                     sum = luminance(r.film.sum[p][0], r.film.sum[p][1], r.film.sum[p][2]);
         pilot.mean.push_back(sum / n);
         pilot.variance.push_back(std::fmax(0, r.film.squares[p][3] - sum * sum / n) / (n - 1));
     }

@@ -2,15 +2,15 @@
 #pragma once
 
 #include "render/renderer.h"
+#include "strategies/presets.h"
 #include "sweep/record.h"
-#include "sweep/strategies.h"
 
 #include <memory>
 
 namespace opal {
 
-// What a second is. kernel: of the device's own profile. cpu: of this process on all cores, divided by the device's compute units:
-// what the kernels would take on a machine of their own, steady where others work, too; of a CPU device.
+// What a second is. kernel: of the device's own profile. cpu: of this process on all cores, divided by the device's
+// compute units: what the kernels would take on a machine of their own, steady where others work, too; of a CPU device.
 enum class Clock { kernel, cpu };
 
 // One strategy, compiled for a device.
@@ -55,10 +55,11 @@ struct Pilot {
 // A short render: about `seconds` of kernel time. Its samples are for deciding, and no part of any result.
 Pilot run_pilot(Measured &measured, unsigned seed, double seconds);
 
-// For each pilot the seconds to relMSE 1: mean over the pixels of the relative variance of one sample, times its seconds.
-// Relative to the median of all pilots, pixel by pixel. A strategy that has not yet met a small light sees no variance, but is
-// far from that median: the larger of both counts. One way of sampling alone that seems far better than MIS has not met its rare
-// bright samples: the balance heuristic's variance exceeds no single way's by more than (1 - 1/2) mean^2 (Veach 1997, theorem 9.2).
+// For each pilot the seconds to relMSE 1: mean over the pixels of the relative variance of one sample, times its
+// seconds. Relative to the median of all pilots, pixel by pixel. A strategy that has not yet met a small light sees no
+// variance, but is far from that median: the larger of both counts. One way of sampling alone that seems far better
+// than MIS has not met its rare bright samples: the balance heuristic's variance exceeds no single way's by more than
+// (1 - 1/2) mean^2 (Veach 1997, theorem 9.2).
 std::vector<double> pilot_costs(const std::vector<Pilot> &pilots);
 
 } // namespace opal

@@ -2,7 +2,7 @@
 
 #include "base/base64.h"
 #include "base/read_file.h"
-#include "sweep/svg.h"
+#include "sweep/convergence_plot.h"
 
 #include <fmt/format.h>
 
@@ -55,15 +55,20 @@ constexpr double levels[] = {0.1, 0.01, 0.001}; // relMSE
 bool bounded(const stats::Interval &i) { return std::isfinite(i.high) && i.low > 0; }
 
 std::string seconds_text(double s) {
-    return s < 100 ? fmt::format("{:.2g} s", s) : s < 6000 ? fmt::format("{:.0f} s", s) : fmt::format("{:.1f} h", s / 3600);
+    return s < 100    ? fmt::format("{:.2g} s", s)
+           : s < 6000 ? fmt::format("{:.0f} s", s)
+                      : fmt::format("{:.1f} h", s / 3600);
 }
 
 // "1.2" above "1.1 to 1.3"
 template <class Format> std::string cell(const stats::Interval &i, Format format, bool known) {
-    return "<td>" + format(i.estimate) + (known ? "<small>" + format(i.low) + " to " + format(i.high) + "</small>" : "") + "</td>";
+    return "<td>" + format(i.estimate) +
+           (known ? "<small>" + format(i.low) + " to " + format(i.high) + "</small>" : "") + "</td>";
 }
 
-std::string number(double x) { return fmt::format("{:.{}f}", x, x < 0.1 ? 4 : x < 1 ? 3 : x < 10 ? 2 : x < 100 ? 1 : 0); }
+std::string number(double x) {
+    return fmt::format("{:.{}f}", x, x < 0.1 ? 4 : x < 1 ? 3 : x < 10 ? 2 : x < 100 ? 1 : 0);
+}
 
 double bias_level(const SweepSummary &summary) { return 0.01 / double(summary.strategies.size()); }
 
@@ -71,19 +76,26 @@ std::string table(const SweepSummary &summary) {
     std::string html = "<table><tr><th>strategy</th>";
     for (double level : levels)
         html += fmt::format("<th>time to<br>relMSE {:g} %</th>", 100 * level);
-    html += "<th>time relative<br>to the best</th><th>efficiency<br>1 / (MSE &times; s)<br>relative to the first</th><th>slope</th><th>bias</th><th>compile</th></tr>\n";
+    html += "<th>time relative<br>to the best</th><th>efficiency<br>1 / (MSE &times; s)<br>relative to the "
+            "first</th><th>slope</th><th>bias</th><th>compile</th></tr>\n";
     for (size_t i = 0; i < summary.strategies.size(); i++) {
         const StrategySummary &s = summary.strategies[i];
-        html += fmt::format("<tr><td><span class='dot' style='background:{}'></span>{}</td>", strategy_color(i), html_text(s.record->label));
+        html += fmt::format("<tr><td><span class='dot' style='background:{}'></span>{}</td>", strategy_color(i),
+                            html_text(s.record->label));
         for (double level : levels)
             html += cell(s.time_to(level), seconds_text, bounded(s.time_to(level)));
         const bool best = i == summary.best, first = i == 0;
-        html += best ? "<td>the best</td>" : cell(s.slower, [](double x) { return number(x) + "&times;"; }, bounded(s.slower));
+        html += best ? "<td>the best</td>"
+                     : cell(
+                           s.slower, [](double x) { return number(x) + "&times;"; }, bounded(s.slower));
         html += first ? "<td>1</td>" : cell(s.efficiency, number, bounded(s.efficiency));
-        html += std::isfinite(s.slope.estimate) ? cell(s.slope, [](double x) { return fmt::format("{:.3f}", x); }, std::isfinite(s.slope.high))
-                                                : "<td>&ndash;</td>";
-        html += s.bias_p < bias_level(summary) ? fmt::format("<td><b>{:+.2g} %</b><small>p = {:.1g}</small></td>", 100 * s.bias, s.bias_p)
-                                               : "<td>none seen</td>";
+        html += std::isfinite(s.slope.estimate)
+                    ? cell(
+                          s.slope, [](double x) { return fmt::format("{:.3f}", x); }, std::isfinite(s.slope.high))
+                    : "<td>&ndash;</td>";
+        html += s.bias_p < bias_level(summary)
+                    ? fmt::format("<td><b>{:+.2g} %</b><small>p = {:.1g}</small></td>", 100 * s.bias, s.bias_p)
+                    : "<td>none seen</td>";
         html += fmt::format("<td>{}</td></tr>\n", seconds_text(s.record->compile_seconds));
     }
     return html + "</table>\n";
@@ -102,9 +114,11 @@ std::string pictures(const SweepSummary &summary, const std::filesystem::path &f
         if (shot.file.empty())
             continue;
         const std::string label = html_text(s.record->label);
-        html += "<figure>" + embedded(folder / (shot.file + ".png"), label) + embedded(folder / (shot.file + "_error.png"), label + ": error");
-        html += fmt::format("<figcaption><b>{}</b>: {} samples per pixel in {:.3g} s, relMSE {} %</figcaption></figure>\n", label, shot.spp,
-                            shot.seconds, number(100 * shot.rel_mse));
+        html += "<figure>" + embedded(folder / (shot.file + ".png"), label) +
+                embedded(folder / (shot.file + "_error.png"), label + ": error");
+        html +=
+            fmt::format("<figcaption><b>{}</b>: {} samples per pixel in {:.3g} s, relMSE {} %</figcaption></figure>\n",
+                        label, shot.spp, shot.seconds, number(100 * shot.rel_mse));
     }
     return html + "</div>\n";
 }
@@ -118,26 +132,37 @@ std::string devices_of(const SweepRecord &r) {
 
 std::string how_measured(const SweepRecord &r) {
     const ReferenceRecord &ref = r.reference;
-    std::string html = fmt::format("<p>{}, {} &times; {} pixels, on {}, by opal {}. Seconds are {}; compiling is not among them. "
-                                   "Each point is the mean of {} renders with seeds of their own, made in rounds: one of every strategy, then the next, "
-                                   "so that what disturbed the machine disturbed all. An interval holds the true value with 95 % confidence: "
-                                   "Student's t, on the logarithm for errors, times and their ratios, by rounds for ratios.</p>\n",
-                                   html_text(r.scene), r.width, r.height, html_text(devices_of(r)), r.version,
-                                   r.clock == "cpu" ? "CPU seconds of all cores over their number, what the kernels take on a machine of their own"
-                                                    : "the device's own kernel times", r.replicates);
-    html += "<p><b>relMSE</b> is the mean over pixels and channels of (image &minus; reference)&sup2; / (reference&sup2; + (1 % of the reference's mean)&sup2;): "
+    std::string html = fmt::format(
+        "<p>{}, {} &times; {} pixels, on {}, by opal {}. Seconds are {}; compiling is not among them. "
+        "Each point is the mean of {} renders with seeds of their own, made in rounds: one of every strategy, then the "
+        "next, "
+        "so that what disturbed the machine disturbed all. An interval holds the true value with 95 % confidence: "
+        "Student's t, on the logarithm for errors, times and their ratios, by rounds for ratios.</p>\n",
+        html_text(r.scene), r.width, r.height, html_text(devices_of(r)), r.version,
+        r.clock == "cpu" ? "CPU seconds of all cores over their number, what the kernels take on a machine of their own"
+                         : "the device's own kernel times",
+        r.replicates);
+    html += "<p><b>relMSE</b> is the mean over pixels and channels of (image &minus; reference)&sup2; / "
+            "(reference&sup2; + (1 % of the reference's mean)&sup2;): "
             "1 % is an image whose typical error is a tenth of each pixel's value. ";
-    html += ref.spp ? fmt::format("The reference has {} samples per pixel of <code>{}</code> ({:.3g} s), two halves of samples that no other image here "
-                                  "uses; what its own noise adds to the errors is estimated from the halves' difference and subtracted.</p>\n",
+    html += ref.spp ? fmt::format("The reference has {} samples per pixel of <code>{}</code> ({:.3g} s), two halves of "
+                                  "samples that no other image here "
+                                  "uses; what its own noise adds to the errors is estimated from the halves' "
+                                  "difference and subtracted.</p>\n",
                                   ref.spp, html_text(ref.made_by), ref.seconds)
                     : fmt::format("The reference is <code>{}</code>; {}.</p>\n", html_text(ref.made_by),
-                                  ref.variance_known ? "its variance, kept in its layers, is subtracted" : "it holds no variance, so that its own noise counts as error");
-    html += "<p><b>slope</b>: of log MSE against log samples per pixel; &minus;1 for independent samples, which is why the time to an error "
-            "follows from the largest render. A strategy whose samples are not independent has times without intervals, along its own slope. "
-            "<b>bias</b>: of the mean luminance against the reference, where a test at level 1 % over all strategies sees one. <b>compile</b>: seconds until the "
+                                  ref.variance_known ? "its variance, kept in its layers, is subtracted"
+                                                     : "it holds no variance, so that its own noise counts as error");
+    html += "<p><b>slope</b>: of log MSE against log samples per pixel; &minus;1 for independent samples, which is why "
+            "the time to an error "
+            "follows from the largest render. A strategy whose samples are not independent has times without "
+            "intervals, along its own slope. "
+            "<b>bias</b>: of the mean luminance against the reference, where a test at level 1 % over all strategies "
+            "sees one. <b>compile</b>: seconds until the "
             "kernel was ready when it was first built here; a driver's cache makes it shorter.</p>\n";
     if (!r.left_out_spp.empty())
-        html += fmt::format("<p>Left out for the budget of {:g} s: {} samples per pixel.</p>\n", r.budget, fmt::join(r.left_out_spp, ", "));
+        html += fmt::format("<p>Left out for the budget of {:g} s: {} samples per pixel.</p>\n", r.budget,
+                            fmt::join(r.left_out_spp, ", "));
     return html;
 }
 
@@ -164,41 +189,56 @@ std::vector<std::string> verdict(const SweepRecord &record, const SweepSummary &
     const double seconds = best.time_to(level).estimate;
     std::string where = std::filesystem::path(record.scene).filename().string();
     for (const DeviceRecord &d : record.devices)
-        where += fmt::format("{}{}", record.devices.size() == 1 ? " and " : &d == &record.devices[0] ? " on " : " and ", d.name);
-    std::vector<std::string> sentences = {fmt::format("On {}, {} is the fastest: it {} relMSE 1 % in {}.", where, best.record->label,
-                                                      seconds > best.points.back().seconds ? "would reach" : "reaches", seconds_text(seconds))};
+        where += fmt::format("{}{}",
+                             record.devices.size() == 1 ? " and "
+                             : &d == &record.devices[0] ? " on "
+                                                        : " and ",
+                             d.name);
+    std::vector<std::string> sentences = {
+        fmt::format("On {}, {} is the fastest: it {} relMSE 1 % in {}.", where, best.record->label,
+                    seconds > best.points.back().seconds ? "would reach" : "reaches", seconds_text(seconds))};
     std::vector<const StrategySummary *> others;
     for (const StrategySummary &s : summary.strategies)
         if (&s != &best)
             others.push_back(&s);
     std::sort(others.begin(), others.end(), [](auto a, auto b) { return a->cost.estimate < b->cost.estimate; });
     for (const StrategySummary *s : others)
-        sentences.push_back(fmt::format(fmt::runtime(bounded(s->slower) && !s->slower.contains(1)
-                                                         ? "{} needs {}, {} times longer (95 % interval {} to {})."
-                                                         : "{} needs {}; that is not significantly different ({} times longer, 95 % interval {} to {})."),
-                                        s->record->label, seconds_text(s->time_to(level).estimate), number(s->slower.estimate),
-                                        number(s->slower.low), number(s->slower.high)));
+        sentences.push_back(fmt::format(
+            fmt::runtime(
+                bounded(s->slower) && !s->slower.contains(1)
+                    ? "{} needs {}, {} times longer (95 % interval {} to {})."
+                    : "{} needs {}; that is not significantly different ({} times longer, 95 % interval {} to {})."),
+            s->record->label, seconds_text(s->time_to(level).estimate), number(s->slower.estimate),
+            number(s->slower.low), number(s->slower.high)));
     for (const StrategySummary &s : summary.strategies)
         if (s.bias_p < bias_level(summary))
-            sentences.push_back(fmt::format("{} is biased: its mean luminance is {:+.2g} % off the reference (p = {:.1g}).", s.record->label,
-                                            100 * s.bias, s.bias_p));
+            sentences.push_back(
+                fmt::format("{} is biased: its mean luminance is {:+.2g} % off the reference (p = {:.1g}).",
+                            s.record->label, 100 * s.bias, s.bias_p));
     for (const StrategySummary &s : summary.strategies)
         if (const unsigned long long invalid = invalid_samples(*s.record))
-            sentences.push_back(fmt::format("{}: {} samples were NaN or infinite and are left out.", s.record->label, invalid));
+            sentences.push_back(
+                fmt::format("{}: {} samples were NaN or infinite and are left out.", s.record->label, invalid));
     return sentences;
 }
 
 std::string html_page(const SweepRecord &record, const SweepSummary &summary, const std::filesystem::path &folder) {
     const std::string name = html_text(std::filesystem::path(record.scene).stem().string());
     std::string html = head;
-    html += "<title>Opal sweep of " + name + "</title></head>\n<body>\n<h1>" + name + ": what each strategy costs and buys</h1>\n";
+    html += "<title>Opal sweep of " + name + "</title></head>\n<body>\n<h1>" + name +
+            ": what each strategy costs and buys</h1>\n";
     html += list_of(verdict(record, summary));
-    html += "<h2>Error against time</h2>\n<p>Both axes are logarithmic; bars are 95 % intervals. Lower left is better. Point at a mark for its figures.</p>\n";
+    html += "<h2>Error against time</h2>\n<p>Both axes are logarithmic; bars are 95 % intervals. Lower left is better. "
+            "Point at a mark for its figures.</p>\n";
     html += convergence_plot(summary);
-    html += "<h2>Time to an error</h2>\n<p>Seconds, extrapolated where no render took as long. Small print: 95 % intervals. relMSE asks the same of all pixels; MSE, in the "
-            "column of efficiencies, is decided by the brightest, such as the edges of lamps.</p>\n" + table(summary);
-    html += "<h2>What each gives in the same time</h2>\n<p>Under each image its error, |image &minus; reference| / reference: dark blue is none, yellow is as "
-            "large as the pixel itself. Point at one to see the same place of all four times as large; click to enlarge.</p>\n";
+    html += "<h2>Time to an error</h2>\n<p>Seconds, extrapolated where no render took as long. Small print: 95 % "
+            "intervals. relMSE asks the same of all pixels; MSE, in the "
+            "column of efficiencies, is decided by the brightest, such as the edges of lamps.</p>\n" +
+            table(summary);
+    html += "<h2>What each gives in the same time</h2>\n<p>Under each image its error, |image &minus; reference| / "
+            "reference: dark blue is none, yellow is as "
+            "large as the pixel itself. Point at one to see the same place of all four times as large; click to "
+            "enlarge.</p>\n";
     html += pictures(summary, folder);
     html += "<h2>How it was measured</h2>\n" + how_measured(record);
     html += "<h2>To repeat it</h2>\n<pre>" + html_text(record.command) + "</pre>\n";

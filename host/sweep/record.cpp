@@ -14,10 +14,13 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Replicate, seed, seconds, mse, rel_mse, mean_
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Point, spp, replicates)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Shot, spp, seconds, rel_mse, file)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceRecord, index, name, driver)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StrategyRecord, name, label, device, lanes, independent, compile_seconds, pilot_cost, pilot_seconds_a_sample, points, shot)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReferenceRecord, made_by, spp, seconds, mean_luminance, stderr_luminance, variance_known, mean_square)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SweepRecord, version, scene, scene_hash, reference_file, clock, devices, width, height, command,
-                                   integrator, replicates, spp, left_out_spp, budget, reference, strategies)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StrategyRecord, name, label, device, lanes, independent, compile_seconds, pilot_cost,
+                                   pilot_seconds_a_sample, points, shot)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReferenceRecord, made_by, spp, seconds, mean_luminance, stderr_luminance,
+                                   variance_known, mean_square)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SweepRecord, version, scene, scene_hash, reference_file, clock, devices, width,
+                                   height, command, integrator, replicates, spp, left_out_spp, budget, reference,
+                                   strategies)
 
 StrategyRecord &SweepRecord::strategy(const std::string &name, const std::string &label) {
     for (StrategyRecord &s : strategies)
@@ -34,7 +37,8 @@ SweepRecord load_record(const std::filesystem::path &folder) {
     try {
         return nlohmann::json::parse(read_file(file)).get<SweepRecord>();
     } catch (const nlohmann::json::exception &error) {
-        throw Error(fmt::format("{}: is no sweep that could be continued ({}); give another folder with -o", file.string(), error.what()));
+        throw Error(fmt::format("{}: is no sweep that could be continued ({}); give another folder with -o",
+                                file.string(), error.what()));
     }
 }
 
@@ -44,7 +48,8 @@ SweepRecord resume(const std::filesystem::path &folder, const SweepRecord &fresh
         return fresh;
     SweepRecord kept = load_record(folder);
     const nlohmann::json was = kept, is = nlohmann::json::parse(dump(fresh)); // as it would have been kept
-    for (const char *key : {"version", "scene_hash", "integrator", "devices", "clock", "width", "height", "reference_file"})
+    for (const char *key :
+         {"version", "scene_hash", "integrator", "devices", "clock", "width", "height", "reference_file"})
         if (was[key] != is[key])
             throw Error(fmt::format("{}: holds another sweep ({} was {}, is {}); give another folder with -o",
                                     file.string(), key, dump(was[key]), dump(is[key])));

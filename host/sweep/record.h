@@ -46,8 +46,8 @@ struct StrategyRecord {
 };
 
 struct ReferenceRecord {
-    std::string made_by;   // a strategy's name, or the file
-    unsigned spp = 0;      // 0: a file's, unknown
+    std::string made_by; // a strategy's name, or the file
+    unsigned spp = 0;    // 0: a file's, unknown
     double seconds = 0;
     double mean_luminance = 0, stderr_luminance = 0;
     bool variance_known = false;
@@ -71,7 +71,8 @@ struct SweepRecord {
 };
 
 SweepRecord load_record(const std::filesystem::path &folder);
-// The record in the folder, or `fresh` where there is none. Error naming what differs where the folder holds another sweep.
+// The record in the folder, or `fresh` where there is none. Error naming what differs where the folder holds another
+// sweep.
 SweepRecord resume(const std::filesystem::path &folder, const SweepRecord &fresh);
 // sweep.json, written safely; with the summary of a finished sweep, which a later run does not read.
 void save(const SweepRecord &record, const std::filesystem::path &folder, const nlohmann::json &summary = {});

@@ -1,7 +1,7 @@
 #include "sweep/reference.h"
 
 #include "image/metrics.h"
-#include "trust/canvas.h"
+#include "plot/canvas.h"
 
 #include <array>
 #include <cmath>
@@ -68,7 +68,8 @@ ErrorAgainst error_against(const Image &reference, const Image &image) {
             return error;
         const std::vector<float> &mean = reference.get(channel).values;
         for (size_t p = 0; p < mean.size(); p++) {
-            const double v = double(layer->values[p]), denominator = double(mean[p]) * double(mean[p]) + metrics.rel_mse_floor;
+            const double v = double(layer->values[p]),
+                         denominator = double(mean[p]) * double(mean[p]) + metrics.rel_mse_floor;
             variance += v;
             relative += denominator > 0 ? v / denominator : 0;
             count++;
@@ -85,7 +86,8 @@ Image error_map(const Image &reference, const Image &image) {
     Canvas canvas(image.width, image.height, {0, 0, 0});
     for (size_t p = 0; p < r.size(); p++) {
         const double scale = std::abs(r[p]) + floor, error = scale > 0 ? std::abs(x[p] - r[p]) / scale : 0;
-        canvas.fill(int(p % size_t(image.width)), int(p / size_t(image.width)), 1, 1, viridis(std::sqrt(std::fmin(error, 1))));
+        canvas.fill(int(p % size_t(image.width)), int(p / size_t(image.width)), 1, 1,
+                    viridis(std::sqrt(std::fmin(error, 1))));
     }
     return canvas.image();
 }

@@ -6,8 +6,8 @@
 namespace opal {
 
 // R, G, B and, where known, the variance of each value as layers variance.R, .G, .B.
-// From two images of disjoint samples (half the samples each): their mean, and (a - b)^2 / 4, an unbiased estimate of the
-// variance of that mean whatever the filter.
+// From two images of disjoint samples (half the samples each): their mean, and (a - b)^2 / 4, an unbiased estimate of
+// the variance of that mean whatever the filter.
 Image reference_of(const Image &a, const Image &b);
 
 struct ErrorAgainst {

@@ -24,8 +24,9 @@ public:
 
     void measure() {
         pilots();
-        best_ = &*std::min_element(candidates_.begin(), candidates_.end(),
-                                   [&](const Candidate &a, const Candidate &b) { return of(a).pilot_cost < of(b).pilot_cost; });
+        best_ = &*std::min_element(candidates_.begin(), candidates_.end(), [&](const Candidate &a, const Candidate &b) {
+            return of(a).pilot_cost < of(b).pilot_cost;
+        });
         fit_budget();
         make_reference();
         for (unsigned round = 1; round <= record_.replicates; round++)
@@ -45,7 +46,8 @@ private:
     double budget() const { return record_.budget / double(record_.devices.size()); }
 
     void pilots() {
-        if (std::all_of(candidates_.begin(), candidates_.end(), [&](const Candidate &c) { return of(c).pilot_cost > 0; }))
+        if (std::all_of(candidates_.begin(), candidates_.end(),
+                        [&](const Candidate &c) { return of(c).pilot_cost > 0; }))
             return;
         const double share = record_.budget > 0 ? pilots_share * budget() / double(candidates_.size()) : pilot_seconds;
         std::vector<Pilot> all;
@@ -80,11 +82,15 @@ private:
         return record_.replicates - unsigned(p ? std::min<size_t>(p->replicates.size(), record_.replicates) : 0);
     }
 
-    unsigned reference_spp() const { return plan_.reference_spp ? plan_.reference_spp : reference_factor * record_.spp.back(); }
+    unsigned reference_spp() const {
+        return plan_.reference_spp ? plan_.reference_spp : reference_factor * record_.spp.back();
+    }
 
     // Kernel seconds of what is still to be measured, by the pilots.
     double seconds_left() {
-        double seconds = record_.reference.made_by.empty() && !plan_.reference ? reference_spp() * of(*best_).pilot_seconds_a_sample : 0;
+        double seconds = record_.reference.made_by.empty() && !plan_.reference
+                             ? reference_spp() * of(*best_).pilot_seconds_a_sample
+                             : 0;
         for (const Candidate &c : candidates_)
             for (unsigned spp : record_.spp)
                 seconds += missing(of(c), spp) * double(spp) * of(c).pilot_seconds_a_sample;
@@ -96,15 +102,18 @@ private:
         double seconds = seconds_left();
         for (; record_.budget > 0 && seconds > budget(); seconds = seconds_left()) {
             if (record_.spp.size() == 1)
-                throw Error(fmt::format("--budget {:g}s: {} samples per pixel alone take about {:.3g} s; give more, or fewer strategies, "
-                                        "--replicates or --spp", record_.budget, record_.spp[0], seconds));
+                throw Error(fmt::format(
+                    "--budget {:g}s: {} samples per pixel alone take about {:.3g} s; give more, or fewer strategies, "
+                    "--replicates or --spp",
+                    record_.budget, record_.spp[0], seconds));
             record_.left_out_spp.insert(record_.left_out_spp.begin(), record_.spp.back());
             record_.spp.pop_back();
         }
         if (!record_.left_out_spp.empty())
-            warn(fmt::format("--budget {:g}s: leaves out {} samples per pixel", record_.budget, fmt::join(record_.left_out_spp, ", ")));
-        info(fmt::format("plan    {} strategies, {} samples per pixel, {} replicates: about {:.3g} s", candidates_.size(),
-                         fmt::join(record_.spp, ", "), record_.replicates, seconds));
+            warn(fmt::format("--budget {:g}s: leaves out {} samples per pixel", record_.budget,
+                             fmt::join(record_.left_out_spp, ", ")));
+        info(fmt::format("plan    {} strategies, {} samples per pixel, {} replicates: about {:.3g} s",
+                         candidates_.size(), fmt::join(record_.spp, ", "), record_.replicates, seconds));
     }
 
     std::filesystem::path reference_file() const { return plan_.folder / "reference.exr"; }
@@ -127,12 +136,17 @@ private:
                 candidate.scene.strategy.math = MathMode::precise;
             Measured measured = compiled(candidate);
             const unsigned half = (reference_spp() + 1) / 2;
-            const auto a = measured.render(half, plan_.seed, reference_first_a), b = measured.render(half, plan_.seed, reference_first_b);
+            const auto a = measured.render(half, plan_.seed, reference_first_a),
+                       b = measured.render(half, plan_.seed, reference_first_b);
             const FilmStatistics sa = statistics_of(a.film), sb = statistics_of(b.film);
             reference_ = reference_of(a.image, b.image);
             write_exr(reference_, reference_file());
-            r = {best_->name, 2 * half, a.seconds + b.seconds, (sa.mean_luminance + sb.mean_luminance) / 2,
-                 std::hypot(sa.stderr_luminance, sb.stderr_luminance) / 2, true};
+            r = {best_->name,
+                 2 * half,
+                 a.seconds + b.seconds,
+                 (sa.mean_luminance + sb.mean_luminance) / 2,
+                 std::hypot(sa.stderr_luminance, sb.stderr_luminance) / 2,
+                 true};
             info(fmt::format("reference by {}: {} samples per pixel, {:.3g} s", best_->label, r.spp, r.seconds));
         }
         r.mean_square = mean_square(reference_);
@@ -152,7 +166,8 @@ private:
                 const unsigned seed = plan_.seed + round;
                 const Measured::Rendered r = measured(i).render(spp, seed);
                 const ErrorAgainst error = error_against(reference_, r.image);
-                replicates.push_back({seed, r.seconds, error.mse, error.rel_mse, statistics_of(r.film).mean_luminance, r.film.invalid});
+                replicates.push_back(
+                    {seed, r.seconds, error.mse, error.rel_mse, statistics_of(r.film).mean_luminance, r.film.invalid});
                 seconds += r.seconds;
                 keep();
             }
@@ -187,8 +202,10 @@ private:
     void picture(const Candidate &c) {
         StrategyRecord &s = of(c);
         const Point &last = s.points.back();
-        const unsigned spp = unsigned(std::fmax(1, std::round(last.spp * picture_seconds() / last.replicates[0].seconds)));
-        const std::filesystem::path stem = plan_.folder / ("equal_time_" + std::to_string(&s - record_.strategies.data() + 1));
+        const unsigned spp =
+            unsigned(std::fmax(1, std::round(last.spp * picture_seconds() / last.replicates[0].seconds)));
+        const std::filesystem::path stem =
+            plan_.folder / ("equal_time_" + std::to_string(&s - record_.strategies.data() + 1));
         const std::array files = {stem.string() + ".exr", stem.string() + ".png", stem.string() + "_error.png"};
         if (s.shot.spp == spp &&
             std::ranges::all_of(files, [](const std::string &file) { return std::filesystem::exists(file); }))
@@ -212,11 +229,13 @@ private:
 
 } // namespace
 
-void measure_points(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates, SweepRecord &record) {
+void measure_points(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates,
+                    SweepRecord &record) {
     Sweep(plan, device, candidates, record).measure();
 }
 
-void take_pictures(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates, SweepRecord &record) {
+void take_pictures(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates,
+                   SweepRecord &record) {
     Sweep(plan, device, candidates, record).pictures();
 }
 

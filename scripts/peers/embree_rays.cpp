@@ -4,11 +4,11 @@
 //
 // TRIANGLES: uint32 count, then 9 float32 a triangle. RAYS: 8 float32 a ray: ox oy oz tmin dx dy dz tmax. HITS: float32
 // t, u, v and int32 triangle a ray, -1 for none; for `any` only the triangle counts, 0 or -1. All little-endian. Prints
-// one JSON object: mrays_per_second is the median of the runs, each over all rays on all cores, mrays_per_cpu_second by the
-// process's time on them (what other processes take does not count); `different` counts,
-// against HITS, rays that one hits and the other misses, points that are apart, and other triangles at the same point (a
-// shared edge). Points are apart that differ by more than 1e-4 of their distance and by more than single precision can tell
-// of coordinates of the scene's size, 2e-6 of it.
+// one JSON object: mrays_per_second is the median of the runs, each over all rays on all cores, mrays_per_cpu_second by
+// the process's time on them (what other processes take does not count); `different` counts, against HITS, rays that
+// one hits and the other misses, points that are apart, and other triangles at the same point (a shared edge). Points
+// are apart that differ by more than 1e-4 of their distance and by more than single precision can tell of coordinates
+// of the scene's size, 2e-6 of it.
 #include <embree3/rtcore.h>
 
 #include <algorithm>
@@ -163,8 +163,8 @@ float size_of(const std::vector<Triangle> &triangles) {
     return size;
 }
 
-Differences differences(const std::vector<Hit> &ours, const std::vector<Hit> &given, const std::vector<Ray> &rays, float size,
-                        bool any) {
+Differences differences(const std::vector<Hit> &ours, const std::vector<Hit> &given, const std::vector<Ray> &rays,
+                        float size, bool any) {
     if (ours.size() != given.size())
         throw std::runtime_error("the hits to compare are " + std::to_string(given.size()) + ", the rays " +
                                  std::to_string(ours.size()));
@@ -234,10 +234,12 @@ void replay(const Options &o) {
     }
     std::sort(rates.begin(), rates.end());
     std::sort(cpu_rates.begin(), cpu_rates.end());
-    std::printf("{\"mrays_per_second\": %.6g, \"least\": %.6g, \"greatest\": %.6g, \"mrays_per_cpu_second\": %.6g, \"rays\": %zu, "
+    std::printf("{\"mrays_per_second\": %.6g, \"least\": %.6g, \"greatest\": %.6g, \"mrays_per_cpu_second\": %.6g, "
+                "\"rays\": %zu, "
                 "\"triangles\": %zu, "
                 "\"build_seconds\": %.6g",
-                rates[rates.size() / 2], rates.front(), rates.back(), cpu_rates[cpu_rates.size() / 2], rays.size(), triangles.size(), build);
+                rates[rates.size() / 2], rates.front(), rates.back(), cpu_rates[cpu_rates.size() / 2], rays.size(),
+                triangles.size(), build);
     if (!o.compare.empty()) {
         const Differences d = differences(hits, read_records<Hit>(o.compare), rays, size_of(triangles), o.any);
         std::printf(", \"different\": {\"hit_or_miss\": %zu, \"distance\": %zu, \"triangle\": %zu}", d.hit_or_miss,

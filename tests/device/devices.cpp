@@ -1,5 +1,6 @@
-// Finding devices: one that crashes, hangs or says nothing costs its own line, and the choice among the others is explained.
-#include "device/probe.h"
+// Finding devices: one that crashes, hangs or says nothing costs its own line, and the choice among the others is
+// explained.
+#include "device/ask_driver.h"
 #include "support/device.h"
 #include "support/scratch.h"
 
@@ -14,9 +15,10 @@ namespace {
 
 // A driver whose first entry point, which the loader calls before anything else, does what `body` says.
 Driver make_driver(const ScratchFolder &folder, const std::string &name, const std::string &body) {
-    const std::filesystem::path source = folder.write(name + ".c", "#include <stdio.h>\n#include <stdlib.h>\n#include <unistd.h>\n"
-                                                                   "void *clGetExtensionFunctionAddress(const char *name) {\n    (void)name;\n    " +
-                                                                       body + "\n    return 0;\n}\n");
+    const std::filesystem::path source =
+        folder.write(name + ".c", "#include <stdio.h>\n#include <stdlib.h>\n#include <unistd.h>\n"
+                                  "void *clGetExtensionFunctionAddress(const char *name) {\n    (void)name;\n    " +
+                                      body + "\n    return 0;\n}\n");
     const std::string library = folder / ("lib" + name + ".so");
     const Outcome built = run_shell("cc -shared -fPIC " + source.string() + " -o " + library);
     INFO(built.err);
@@ -74,16 +76,16 @@ std::vector<std::string> found_with(const std::map<std::string, std::string> &va
 }
 
 const std::vector<DeviceInfo> several = {listed(0, "cpu", "llvmpipe (LLVM 15)"), listed(1, "cpu", "Ryzen"),
-                                         listed(2, "gpu", "Old GPU", "crashed while it was asked"), listed(3, "gpu", "Radeon"),
-                                         listed(4, "gpu", "GeForce")};
+                                         listed(2, "gpu", "Old GPU", "crashed while it was asked"),
+                                         listed(3, "gpu", "Radeon"), listed(4, "gpu", "GeForce")};
 
 } // namespace
 
 TEST_CASE("A driver that crashes or hangs costs its line and no other", "[devices]") {
     set_probe_binary(OPAL_BINARY);
     const ScratchFolder folder;
-    const std::vector<Driver> drivers = {make_driver(folder, "crash", "abort();"), make_driver(folder, "hang", "sleep(60);"),
-                                                        good_driver()};
+    const std::vector<Driver> drivers = {make_driver(folder, "crash", "abort();"),
+                                         make_driver(folder, "hang", "sleep(60);"), good_driver()};
     const std::vector<DeviceInfo> found = probe_drivers(drivers, 3);
     REQUIRE(found.size() >= 3);
     CHECK(found[0].problem == "crashed while it was asked (Aborted)");
@@ -99,7 +101,8 @@ TEST_CASE("opal devices survives a crashing driver beside a good one", "[devices
     folder.write("vendors/good.icd", good_driver().library + "\n");
     const Outcome outcome = devices_of(folder / "vendors");
     CHECK(outcome.exit_code == 0);
-    CHECK_THAT(outcome.out, Catch::Contains("a_crash.icd: crashed while it was asked") && Catch::Contains("render takes 1: "));
+    CHECK_THAT(outcome.out,
+               Catch::Contains("a_crash.icd: crashed while it was asked") && Catch::Contains("render takes 1: "));
     const Outcome refused = devices_of(folder / "vendors", "--device 0");
     CHECK(refused.exit_code == 1);
     CHECK_THAT(refused.err, Catch::StartsWith("error: device 0 ") && Catch::Contains("crashed while it was asked"));
@@ -108,8 +111,11 @@ TEST_CASE("opal devices survives a crashing driver beside a good one", "[devices
 TEST_CASE("Drivers are found where each loader would look", "[devices]") {
     using Lines = std::vector<std::string>;
     const ScratchFolder folder;
-    const auto icd = [&](const std::string &name, const std::string &text) { return folder.write("vendors/" + name, text).string(); };
-    const std::string b = icd("b.icd", "libb.so.1\n"), a = icd("a.icd", "# whose it is\n\n \t/opt/a/liba.so \r\nnot this one\n"),
+    const auto icd = [&](const std::string &name, const std::string &text) {
+        return folder.write("vendors/" + name, text).string();
+    };
+    const std::string b = icd("b.icd", "libb.so.1\n"),
+                      a = icd("a.icd", "# whose it is\n\n \t/opt/a/liba.so \r\nnot this one\n"),
                       empty = icd("empty.icd", "\n# nothing\n"), vendors = (folder / "vendors").string();
     icd("readme.txt", "libc.so\n");
     const Lines all = {a + " -> /opt/a/liba.so", b + " -> libb.so.1", empty + " -> "};
@@ -148,7 +154,8 @@ TEST_CASE("A driver with several names is listed once", "[devices]") {
     std::filesystem::create_symlink(std::filesystem::canonical(good.library), folder / "libother.so");
     folder.write("vendors/a.icd", good.library + "\n");
     folder.write("vendors/b.icd", (folder / "libother.so").string() + "\n");
-    const Outcome outcome = devices_with("OCL_ICD_FILENAMES=" + good.library + " OCL_ICD_VENDORS=" + (folder / "vendors").string(), "--json");
+    const Outcome outcome = devices_with(
+        "OCL_ICD_FILENAMES=" + good.library + " OCL_ICD_VENDORS=" + (folder / "vendors").string(), "--json");
     INFO(outcome.out << outcome.err);
     REQUIRE(outcome.exit_code == 0);
     CHECK(nlohmann::json::parse(outcome.out)["devices"].size() == own);
@@ -160,16 +167,23 @@ TEST_CASE("A driver that gives no device says why", "[devices]") {
     folder.write("empty.icd", "\n");
     const Outcome outcome = devices_of(folder.path());
     CHECK(outcome.exit_code == 1);
-    CHECK_THAT(outcome.out, Catch::Contains("gone.icd: cannot be loaded (libgone.so.7: cannot open shared object file"));
+    CHECK_THAT(outcome.out,
+               Catch::Contains("gone.icd: cannot be loaded (libgone.so.7: cannot open shared object file"));
     CHECK_THAT(outcome.out, Catch::Contains("empty.icd: names no library"));
 }
 
 TEST_CASE("opal devices tells what of each device is used and what is not", "[devices]") {
-    const auto posing = [](const std::string &pose) { return devices_with("LD_PRELOAD=" OPAL_POSING " OPAL_POSE=" + pose, "--device " + std::to_string(device().info.index)); };
+    const auto posing = [](const std::string &pose) {
+        return devices_with("LD_PRELOAD=" OPAL_POSING " OPAL_POSE=" + pose,
+                            "--device " + std::to_string(device().info.index));
+    };
     const Outcome gpu = posing("gpu,no-fp64"), narrow = posing("vectors-of-2");
-    CHECK_THAT(gpu.out, Catch::Contains("used: 1 lane, work-groups of 64, buffers of at most ") && Catch::Contains("--math precise, fast\n"));
-    CHECK_THAT(gpu.out, Catch::Contains("not used: local memory; ") && Catch::Contains("; --math double, as the device lacks cl_khr_fp64\n"));
-    CHECK_THAT(narrow.out, Catch::Contains("used: 1 lane, work-groups of 1, ") && Catch::Contains("vectors of 2 floats, as 4 is the least"));
+    CHECK_THAT(gpu.out, Catch::Contains("used: 1 lane, work-groups of 64, buffers of at most ") &&
+                            Catch::Contains("--math precise, fast\n"));
+    CHECK_THAT(gpu.out, Catch::Contains("not used: local memory; ") &&
+                            Catch::Contains("; --math double, as the device lacks cl_khr_fp64\n"));
+    CHECK_THAT(narrow.out, Catch::Contains("used: 1 lane, work-groups of 1, ") &&
+                               Catch::Contains("vectors of 2 floats, as 4 is the least"));
     if (device().info.fp64)
         CHECK_THAT(narrow.out, Catch::Contains(", double (1 lane)\n"));
 }
@@ -187,7 +201,8 @@ TEST_CASE("The default is the first usable GPU, else a CPU, else a software rast
     CHECK(pick({several[0], several[1], several[2]}).info.index == 1);
     CHECK(pick({several[0], several[1]}).reason == "the first CPU device, as there is no GPU");
     CHECK(pick({several[0]}).reason == "only a software rasteriser was found");
-    CHECK_THROWS_WITH(pick({several[2]}), Catch::Contains("no usable OpenCL device; found: 2 (Platform of Old GPU: crashed"));
+    CHECK_THROWS_WITH(pick({several[2]}),
+                      Catch::Contains("no usable OpenCL device; found: 2 (Platform of Old GPU: crashed"));
 }
 
 TEST_CASE("A device is chosen by index, type or part of its name", "[devices]") {
@@ -195,8 +210,10 @@ TEST_CASE("A device is chosen by index, type or part of its name", "[devices]") 
     CHECK(pick_device("gpu", several).info.name == "Radeon");
     CHECK(pick_device("CPU", several).info.index == 0);
     CHECK(pick_device("ryz", several).info.name == "Ryzen");
-    CHECK_THROWS_WITH(pick_device("2", several), Catch::StartsWith("device 2 (Platform of Old GPU) cannot be used: it crashed"));
-    CHECK_THROWS_WITH(pick_device("9", several), Catch::StartsWith("no OpenCL device \"9\"; available: 0 (cpu, llvmpipe"));
+    CHECK_THROWS_WITH(pick_device("2", several),
+                      Catch::StartsWith("device 2 (Platform of Old GPU) cannot be used: it crashed"));
+    CHECK_THROWS_WITH(pick_device("9", several),
+                      Catch::StartsWith("no OpenCL device \"9\"; available: 0 (cpu, llvmpipe"));
     CHECK_THROWS_WITH(pick_device("Voodoo", several), Catch::Contains("4 (gpu, GeForce)"));
 }
 
@@ -204,5 +221,6 @@ TEST_CASE("The device that is opened is the one that was listed", "[devices]") {
     CHECK(device().device.getInfo<CL_DEVICE_NAME>().find(device().info.name) != std::string::npos);
     CHECK(device().queue.getInfo<CL_QUEUE_PROPERTIES>() == CL_QUEUE_PROFILING_ENABLE);
     const std::string wanted = std::to_string(device().info.index);
-    CHECK_THAT(run_shell(std::string(OPAL_BINARY) + " devices --json --device " + wanted).out, Catch::Contains(device().info.driver));
+    CHECK_THAT(run_shell(std::string(OPAL_BINARY) + " devices --json --device " + wanted).out,
+               Catch::Contains(device().info.driver));
 }

@@ -6,6 +6,12 @@
 using namespace opal;
 using namespace opal::test;
 
-TEST_CASE("The tree finds what trying every triangle finds", "[intersection]") { require_all_pass(check_tree(Sources::embedded(), test_seed(110))); }
-TEST_CASE("So does a small scene without a tree", "[intersection]") { require_all_pass(check_tiny(Sources::embedded(), test_seed(111))); }
-TEST_CASE("No ray leaks through edges and vertices of closed meshes", "[intersection]") { require_all_pass(check_watertight(Sources::embedded(), test_seed(112))); }
+TEST_CASE("The tree finds what trying every triangle finds", "[intersection]") {
+    require_all_pass(check_tree(Sources::embedded(), test_seed(110)));
+}
+TEST_CASE("So does a small scene without a tree", "[intersection]") {
+    require_all_pass(check_tiny(Sources::embedded(), test_seed(111)));
+}
+TEST_CASE("No ray leaks through edges and vertices of closed meshes", "[intersection]") {
+    require_all_pass(check_watertight(Sources::embedded(), test_seed(112)));
+}

@@ -1,4 +1,5 @@
-// With another OpenCL loader in the place of the one that Opal was linked with, the same devices are found and compute the same.
+// With another OpenCL loader in the place of the one that Opal was linked with, the same devices are found and compute
+// the same.
 #include "support/device.h"
 #include "support/scratch.h"
 
@@ -22,10 +23,11 @@ Answers answers(const std::string &environment) {
     REQUIRE(listed.exit_code == 0);
     Answers all;
     for (const nlohmann::json &device : nlohmann::json::parse(listed.out)["devices"])
-        all.devices.push_back(device["platform"].get<std::string>() + ", " + device["name"].get<std::string>() + device["problem"].get<std::string>());
+        all.devices.push_back(device["platform"].get<std::string>() + ", " + device["name"].get<std::string>() +
+                              device["problem"].get<std::string>());
     const ScratchFolder folder;
-    const Outcome checked = run_shell(environment + OPAL_BINARY " selftest --group basics --device " + std::to_string(device().info.index) +
-                                      " --json " + (folder / "out").string());
+    const Outcome checked = run_shell(environment + OPAL_BINARY " selftest --group basics --device " +
+                                      std::to_string(device().info.index) + " --json " + (folder / "out").string());
     INFO(checked.out << checked.err);
     CHECK(checked.exit_code == 0);
     all.numbers = nlohmann::json::parse(read_text(folder / "out"))["checks"].dump();
@@ -37,7 +39,8 @@ Answers answers(const std::string &environment) {
 TEST_CASE("Other OpenCL loaders find the same devices", "[loaders]") {
     const char *const folders = std::getenv("OPAL_TEST_LOADERS");
     if (!folders) {
-        WARN("skipped: OPAL_TEST_LOADERS names no folder that holds another libOpenCL.so.1 (PyPI's nvidia-cuda-opencl has Khronos's)");
+        WARN("skipped: OPAL_TEST_LOADERS names no folder that holds another libOpenCL.so.1 (PyPI's nvidia-cuda-opencl "
+             "has Khronos's)");
         return;
     }
     const Answers own = answers("");

@@ -6,7 +6,15 @@
 using namespace opal;
 using namespace opal::test;
 
-TEST_CASE("Random numbers are the known ones, bit for bit, and never 1", "[numbers]") { require_all_pass(check_known_numbers(Sources::embedded(), 0)); }
-TEST_CASE("Sobol points lie one in each elementary interval", "[numbers]") { require_all_pass(check_sobol(Sources::embedded(), test_seed(100))); }
-TEST_CASE("Strata are met once each, in an order of their own", "[numbers]") { require_all_pass(check_stratified(Sources::embedded(), test_seed(101))); }
-TEST_CASE("Pixels, samples, dimensions and seeds are uncorrelated", "[numbers]") { require_all_pass(check_independence(Sources::embedded(), test_seed(102))); }
+TEST_CASE("Random numbers are the known ones, bit for bit, and never 1", "[numbers]") {
+    require_all_pass(check_known_numbers(Sources::embedded(), 0));
+}
+TEST_CASE("Sobol points lie one in each elementary interval", "[numbers]") {
+    require_all_pass(check_sobol(Sources::embedded(), test_seed(100)));
+}
+TEST_CASE("Strata are met once each, in an order of their own", "[numbers]") {
+    require_all_pass(check_stratified(Sources::embedded(), test_seed(101)));
+}
+TEST_CASE("Pixels, samples, dimensions and seeds are uncorrelated", "[numbers]") {
+    require_all_pass(check_independence(Sources::embedded(), test_seed(102)));
+}

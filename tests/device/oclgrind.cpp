@@ -12,7 +12,9 @@ namespace {
 // Oclgrind 21.10 knows few of the intrinsics that optimisation and inlining bring in.
 Outcome simulate(const ScratchFolder &vendors, const std::string &arguments) {
     return run_shell("OCL_ICD_VENDORS=" + vendors.path().string() +
-                     " OCLGRIND_DATA_RACES=1 OCLGRIND_BUILD_OPTIONS='-cl-opt-disable -DOPAL_KEEP_CALLS' " OPAL_BINARY " " + arguments);
+                     " OCLGRIND_DATA_RACES=1 OCLGRIND_BUILD_OPTIONS='-cl-opt-disable -DOPAL_KEEP_CALLS' " OPAL_BINARY
+                     " " +
+                     arguments);
 }
 
 } // namespace
@@ -27,7 +29,8 @@ TEST_CASE("Oclgrind finds no invalid access and no race", "[oclgrind]") {
     vendors.write("oclgrind.icd", std::string(library) + "\n");
     const std::string scenes = OPAL_SOURCE_DIR "/scenes/", out = " --no-png -o " + (output / "out.exr").string();
     for (const std::string &arguments :
-         {std::string("warp bsdf:microfacet --samples 1000 --cells 2"), std::string("warp light:many --triangle-choice uniform --samples 1000 --cells 2"),
+         {std::string("warp bsdf:microfacet --samples 1000 --cells 2"),
+          std::string("warp light:many --triangle-choice uniform --samples 1000 --cells 2"),
           "render " + scenes + "cbox_mis.xml --width 2 --height 2 --spp 1" + out,
           "render " + scenes + "mixed_room.xml --width 2 --height 2 --spp 1 --sampler sobol" + out}) {
         const Outcome outcome = simulate(vendors, arguments);

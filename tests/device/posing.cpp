@@ -1,5 +1,5 @@
-// The host's code for GPUs, on a CPU device that says it is one (support/posing_preload.cpp): work-groups of 64, a pixel a work-item,
-// buffers that are copied.
+// The host's code for GPUs, on a CPU device that says it is one (support/posing_preload.cpp): work-groups of 64, a
+// pixel a work-item, buffers that are copied.
 #include "support/scratch.h"
 
 #include <catch2/catch.hpp>
@@ -36,9 +36,11 @@ TEST_CASE("A GPU passes the quick selftest", "[posing]") {
 TEST_CASE("selftest asks functions in the work-groups that render", "[posing]") {
     for (const auto &[device, size] : {std::pair("gpu", "64"), {"cpu", "1"}}) {
         const ScratchFolder folder;
-        const std::string log = (folder / "log").string(), environment = preload + "OPAL_POSE=" + device + " OPAL_LAUNCHES=" + log + " ";
+        const std::string log = (folder / "log").string(),
+                          environment = preload + "OPAL_POSE=" + device + " OPAL_LAUNCHES=" + log + " ";
         run(environment, "selftest --group basics --device " + std::string(device));
-        run(environment, "render " + scenes + "cbox_mis.xml --width 16 --spp 1 --no-png -o " + (folder / "out.exr").string() + " --device " + device);
+        run(environment, "render " + scenes + "cbox_mis.xml --width 16 --spp 1 --no-png -o " +
+                             (folder / "out.exr").string() + " --device " + device);
         std::map<std::string, std::set<std::string>> sizes; // of each kernel
         std::istringstream launches(read_text(log));
         for (std::string kernel, local; launches >> kernel >> local;)
@@ -51,7 +53,8 @@ TEST_CASE("selftest asks functions in the work-groups that render", "[posing]") 
 
 TEST_CASE("A GPU's pictures are those of a CPU at one lane", "[posing]") {
     const ScratchFolder folder;
-    const std::string gpu = (folder / "gpu.exr").string(), cpu = (folder / "cpu.exr").string(), file = (folder / "compare.json").string();
+    const std::string gpu = (folder / "gpu.exr").string(), cpu = (folder / "cpu.exr").string(),
+                      file = (folder / "compare.json").string();
     for (const char *scene : {"cbox_mis", "mixed_room", "veach_mis"}) {
         const std::string render = "render " + scenes + scene + ".xml --width 40 --spp 16 --no-png --lanes 1 -o ";
         as_gpu(render + gpu);

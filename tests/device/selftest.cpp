@@ -16,7 +16,8 @@ Outcome selftest(const std::string &arguments) {
 }
 
 // The kernels as a driver would run them that does `to` where `from` is written.
-Outcome selftest_of_mutant(const std::string &group, const std::string &file, const std::string &from, const std::string &to) {
+Outcome selftest_of_mutant(const std::string &group, const std::string &file, const std::string &from,
+                           const std::string &to) {
     const ScratchFolder folder;
     std::filesystem::copy(OPAL_SOURCE_DIR "/cl", folder / "cl", std::filesystem::copy_options::recursive);
     std::string text = read_text(folder / ("cl/" + file));
@@ -40,12 +41,15 @@ TEST_CASE("This device passes, at both widths and with both kinds of math", "[se
 }
 
 TEST_CASE("What computes wrong is found", "[selftest]") {
-    struct Mutant { const char *group, *file, *from, *to, *found; };
+    struct Mutant {
+        const char *group, *file, *from, *to, *found;
+    };
     const Mutant mutants[] = {
         {"basics", "math.cl", "R(8.3333333333333333e-03)", "R(8.3233333333333333e-03)", "sin_2pi"},
         {"basics", "rng.cl", "0x53a22864u", "0x53a22865u", "Sobol"},
         {"warps", "warp.cl", "sqrt(u.x * (2 - u.x))", "sqrt(u.x)", "warps: samples"},
-        {"bsdfs", "bsdfs/microfacet.cl", "(4 * fabs(v3_dot(h, wo)));", "(4.1f * fabs(v3_dot(h, wo)));", "BSDFs: samples"},
+        {"bsdfs", "bsdfs/microfacet.cl", "(4 * fabs(v3_dot(h, wo)));", "(4.1f * fabs(v3_dot(h, wo)));",
+         "BSDFs: samples"},
         {"bsdfs", "bsdfs/dielectric.cl", "square(boundary.inverse_eta)", "boundary.inverse_eta", "mirror, dielectric"},
         {"lights", "emitters/mesh.cl", "folded ? 1 - point.x", "folded ? point.x", "lights: points"},
         {"rays", "one_lane/walk.cl", "near_x = inverse.x < 0", "near_x = inverse.x > 0", "tree: hits"},
@@ -63,7 +67,8 @@ TEST_CASE("What computes wrong is found", "[selftest]") {
 
 TEST_CASE("A crash, a hang and kernels that do not build are told", "[selftest]") {
     const char *const output = "planes[plane * stride + base + lane] = (float)lanes[lane];";
-    const Outcome crash = selftest_of_mutant("warps", "planes.cl", output, "*(volatile global float *)(8 + get_global_id(0)) = (float)lanes[lane];");
+    const Outcome crash = selftest_of_mutant("warps", "planes.cl", output,
+                                             "*(volatile global float *)(8 + get_global_id(0)) = (float)lanes[lane];");
     CHECK(crash.exit_code == 1);
     CHECK_THAT(crash.out, Catch::Contains("warps at 1 precise: crashed (Segmentation fault)"));
     const Outcome broken = selftest_of_mutant("warps", "planes.cl", output, "nothing;");

@@ -1,4 +1,5 @@
-// The whole table of `opal extremes` with 2^22 paths a picture, and rays at edges by the hundred million. Of many minutes.
+// The whole table of `opal extremes` with 2^22 paths a picture, and rays at edges by the hundred million. Of many
+// minutes.
 #include "extremes/measure.h"
 #include "support/device.h"
 #include "support/seeds.h"

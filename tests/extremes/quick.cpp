@@ -1,4 +1,5 @@
-// Single against double precision at the ends of what is promised, and the mutants that a row must see. The whole table: every_row.cpp.
+// Single against double precision at the ends of what is promised, and the mutants that a row must see. The whole
+// table: every_row.cpp.
 #include "base/table.h"
 #include "extremes/measure.h"
 #include "support/device.h"
@@ -40,7 +41,8 @@ void require_kept(const extremes::Sweep &s) {
 TEST_CASE("Single precision keeps what is promised at the ends of each range", "[quick]") {
     if (!doubles())
         return;
-    for (const char *name : {"scale", "distance", "light-size", "alpha", "phong", "edges", "numbers", "samplers", "depth", "height"})
+    for (const char *name :
+         {"scale", "distance", "light-size", "alpha", "phong", "edges", "numbers", "samplers", "depth", "height"})
         require_kept(sweep(row(name), device(), small(), 100));
 }
 
@@ -62,9 +64,16 @@ TEST_CASE("What does not survive the extremes is seen by a row", "[quick]") {
         double value;
     };
     for (const Control &c : std::vector<Control>{
-             {{"an absolute epsilon", "surface.cl", "return 24 * R(5.9604645e-08) * largest;", "return R(1e-3) + 0 * largest;"}, "detail", 1e-2},
-             {{"naive 1 - cos^2", "warp.cl", "-expm1(log(u.x) / (n + 1))", "1 - exp(log(u.x) / (n + 1))"}, "numbers", 0.5},
-             {{"a plain sum of the samples", "film.cl", "r.lo = lo - (r.hi - hi);", "r.lo = 0;"}, "samples", 1 << 20}}) {
+             {{"an absolute epsilon", "surface.cl", "return 24 * R(5.9604645e-08) * largest;",
+               "return R(1e-3) + 0 * largest;"},
+              "detail",
+              1e-2},
+             {{"naive 1 - cos^2", "warp.cl", "-expm1(log(u.x) / (n + 1))", "1 - exp(log(u.x) / (n + 1))"},
+              "numbers",
+              0.5},
+             {{"a plain sum of the samples", "film.cl", "r.lo = lo - (r.hi - hi);", "r.lo = 0;"},
+              "samples",
+              1 << 20}}) {
         extremes::Row one = row(c.row);
         one.values = {one.start, c.value};
         one.promised_from = std::min(one.start, c.value);
@@ -83,13 +92,16 @@ TEST_CASE("The command prints a table, and writes JSON and a plot", "[quick]") {
         return;
     const ScratchFolder folder;
     const char *wanted = std::getenv("OPAL_TEST_DEVICE");
-    const std::string opal = std::string(OPAL_BINARY) + " extremes --device " + (wanted ? wanted : "cpu") + " --side 16 --spp 16 --row radiance ";
-    const Outcome outcome = run_shell(opal + "--json " + (folder / "out.json").string() + " --plot " + (folder / "out.svg").string());
+    const std::string opal = std::string(OPAL_BINARY) + " extremes --device " + (wanted ? wanted : "cpu") +
+                             " --side 16 --spp 16 --row radiance ";
+    const Outcome outcome =
+        run_shell(opal + "--json " + (folder / "out.json").string() + " --plot " + (folder / "out.svg").string());
     INFO(outcome.out << outcome.err);
     CHECK(outcome.exit_code == 0);
     CHECK_THAT(outcome.out, Catch::Contains("radiance: ") && Catch::Contains("correct from"));
     const auto json = nlohmann::json::parse(read_text(folder / "out.json"));
     CHECK(json.at("rows").at(0).at("points").size() == row("radiance").values.size());
-    CHECK_THAT(read_text(folder / "out.svg"), Catch::StartsWith("<svg") && Catch::Contains("radiance of a light") && Catch::EndsWith("</svg>\n"));
+    CHECK_THAT(read_text(folder / "out.svg"),
+               Catch::StartsWith("<svg") && Catch::Contains("radiance of a light") && Catch::EndsWith("</svg>\n"));
     CHECK_THAT(run_shell(opal + "--row size").err, Catch::Contains("available: "));
 }

@@ -1,9 +1,9 @@
 // The tree against brute force in double, its invariants, and its cost.
-#include "flatten/bvh.h"
+#include "bvh/bvh.h"
 
 #include "base/math.h"
-#include "flatten/collapse.h"
-#include "flatten/reinsertion.h"
+#include "bvh/collapse.h"
+#include "bvh/reinsertion.h"
 
 #include <catch2/catch.hpp>
 
@@ -212,7 +212,8 @@ void check_against_brute_force(const TriangleSoup &soup, int rays) {
         CHECK(hits > rays / 10);
 }
 
-// Every node and block is reached once. Of whole triangles, too, and boxes hold exactly what is below them; of parts no block has two of the same.
+// Every node and block is reached once. Of whole triangles, too, and boxes hold exactly what is below them; of parts no
+// block has two of the same.
 struct Structure {
     const TriangleSoup &soup;
     const Bvh &bvh;
@@ -423,8 +424,10 @@ TEST_CASE("the parts of long triangles cover them, and make a cheaper tree that 
     for (int i = 0; i < 100000; i++) {
         const uint id = random.bits() % uint(soup.corners.size());
         const auto &[a, b, c] = soup.corners[id];
-        const double u = i % 4 ? random() : i % 8 / 4, v = (i % 3 ? random() : i % 2) * (1 - u); // on corners and sides, too
-        const Vec3 p = to_vec(soup.vertices[a]) * (1 - u - v) + to_vec(soup.vertices[b]) * u + to_vec(soup.vertices[c]) * v;
+        const double u = i % 4 ? random() : i % 8 / 4,
+                     v = (i % 3 ? random() : i % 2) * (1 - u); // on corners and sides, too
+        const Vec3 p =
+            to_vec(soup.vertices[a]) * (1 - u - v) + to_vec(soup.vertices[b]) * u + to_vec(soup.vertices[c]) * v;
         const double rounding = 0x1p-51; // of p, whose coordinates are below 2
         const auto holds = [&](const Box &box) {
             for (int axis = 0; axis < 3; axis++)

@@ -63,15 +63,19 @@ TEST_CASE("inspect tells what a scene holds and why each feature is in or out", 
     const Outcome plain = run_shell(inspect + " --lanes 8 --lighting bsdf --max-depth 7");
     INFO(plain.err);
     REQUIRE(plain.exit_code == 0);
-    for (const char *part : {"32 x 16 pixels", "2 diffuse", "1 parallelogram", "2, 4 triangles", "emits 1 2 3 W/(m^2 sr)",
-                             "lighting          bsdf", "max-depth         7", "lanes             8\n", "bsdf_diffuse          in ",
-                             "bsdf_phong            out "})
+    for (const char *part : {"32 x 16 pixels", "2 diffuse", "1 parallelogram", "2, 4 triangles",
+                             "emits 1 2 3 W/(m^2 sr)", "lighting          bsdf", "max-depth         7",
+                             "lanes             8\n", "bsdf_diffuse          in ", "bsdf_phong            out "})
         CHECK_THAT(plain.out, Catch::Contains(part));
     const Outcome program = run_shell(inspect + " --cl --lanes 4 --specialise off");
-    CHECK_THAT(program.out, Catch::StartsWith("#define LANES 4\n") && Catch::Contains("#define OPAL_HAS_bsdf_phong 1\n") &&
-                                Catch::Contains("#define OPAL_AXIS_lighting -1\n") && Catch::Contains("#line 1 \"cl/kernels/render.cl\""));
-    check_refused("inspect " + (folder / "scene.xml").string() + " --mis balanced", "available: balance, power, one-sample");
-    check_refused("inspect " + (folder / "scene.xml").string() + " --cl --cl-dir " + folder.path().string(), "holds no .cl file");
+    CHECK_THAT(program.out, Catch::StartsWith("#define LANES 4\n") &&
+                                Catch::Contains("#define OPAL_HAS_bsdf_phong 1\n") &&
+                                Catch::Contains("#define OPAL_AXIS_lighting -1\n") &&
+                                Catch::Contains("#line 1 \"cl/kernels/render.cl\""));
+    check_refused("inspect " + (folder / "scene.xml").string() + " --mis balanced",
+                  "available: balance, power, one-sample");
+    check_refused("inspect " + (folder / "scene.xml").string() + " --cl --cl-dir " + folder.path().string(),
+                  "holds no .cl file");
 }
 
 TEST_CASE("The command line is kept as a shell would take it", "[commands]") {

@@ -15,7 +15,9 @@ using namespace opal;
 namespace {
 
 // Upper word of the product, as the device takes rows (cl/emitter.cl).
-unsigned row_of(std::uint64_t number, int bits, std::uint64_t rows) { return unsigned((number << (32 - bits)) * rows >> 32); }
+unsigned row_of(std::uint64_t number, int bits, std::uint64_t rows) {
+    return unsigned((number << (32 - bits)) * rows >> 32);
+}
 
 // How many of the 2^bits numbers lead to each row, found by trying them.
 std::vector<double> numbers_of_rows(std::uint64_t rows) {
@@ -49,8 +51,8 @@ std::vector<double> drawn(const AliasTable &table) {
     return probability;
 }
 
-// Whether what is drawn is what the weights ask for, but for roundings: a row has a whole number of numbers, and a row's accept is rounded
-// up by less than 2^-24, at the cost of the index that it gives the rest to.
+// Whether what is drawn is what the weights ask for, but for roundings: a row has a whole number of numbers, and a
+// row's accept is rounded up by less than 2^-24, at the cost of the index that it gives the rest to.
 bool near(const AliasTable &table, const std::vector<double> &weights) {
     const double count = double(weights.size()), sum = std::accumulate(weights.begin(), weights.end(), 0.0);
     std::vector<double> roundings(weights.size(), 1);
@@ -59,7 +61,8 @@ bool near(const AliasTable &table, const std::vector<double> &weights) {
     const std::vector<double> got = drawn(table);
     for (std::size_t i = 0; i < weights.size(); i++) {
         const double wished = weights[i] / sum;
-        const double limit = wished * (count * std::ldexp(1.0, count > OPAL_ALIAS_ROWS ? -32 : -24) + 1e-9) + roundings[i] * 0x1p-24 / count;
+        const double limit = wished * (count * std::ldexp(1.0, count > OPAL_ALIAS_ROWS ? -32 : -24) + 1e-9) +
+                             roundings[i] * 0x1p-24 / count;
         if (!(std::abs(got[i] - wished) <= limit))
             return false;
     }
@@ -98,7 +101,8 @@ TEST_CASE("an alias table states what is drawn, number by number", "[distributio
         CHECK(drawn(table) == table.probability);
         CHECK(std::abs(std::accumulate(table.probability.begin(), table.probability.end(), 0.0) - 1) < 1e-11);
         CHECK(*std::min_element(table.probability.begin(), table.probability.end()) > 0);
-        CHECK(std::all_of(table.accept.begin(), table.accept.end(), [](double a) { return std::ldexp(a, 24) == std::floor(std::ldexp(a, 24)); }));
+        CHECK(std::all_of(table.accept.begin(), table.accept.end(),
+                          [](double a) { return std::ldexp(a, 24) == std::floor(std::ldexp(a, 24)); }));
         CHECK(near(table, weights));
     }
 }

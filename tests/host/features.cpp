@@ -42,7 +42,8 @@ TEST_CASE("features are what the scene and the strategy ask for, each with a rea
         return names;
     };
     using Names = std::set<std::string>;
-    CHECK(on(description) == Names{"bsdf_diffuse", "bsdf_mirror", "emitter_mesh", "emitter_point", "listed", "many_emitters"});
+    CHECK(on(description) ==
+          Names{"bsdf_diffuse", "bsdf_mirror", "emitter_mesh", "emitter_point", "listed", "many_emitters"});
     CHECK(reason(flatten(description, 8), "bsdf_mirror") == "1 of 2 meshes");
 
     SECTION("in the order of the list") {

@@ -1,7 +1,7 @@
 // From a scene as written to the tables of the device: positions, triangles, settings.
 #include "base/log.h"
 #include "flatten/geometry.h"
-#include "scene/load.h"
+#include "read/nori/load.h"
 #include "support/plain_scenes.h"
 
 #include <catch2/catch.hpp>
@@ -105,7 +105,8 @@ TEST_CASE("every number of the scene reaches the settings", "[flatten]") {
     CHECK(s.choices[AXIS_integrator] == CHOICE_integrator_path);
 }
 
-// The triangles that listed face i stands for: in the slots that the device finds them in, with the corners that it tests.
+// The triangles that listed face i stands for: in the slots that the device finds them in, with the corners that it
+// tests.
 std::vector<std::array<std::array<float, 3>, 3>> triangles_of_face(const FlatScene &scene, uint i) {
     const ListedFace &face = scene.listed_faces[i];
     const auto at = [&](int corner) {
@@ -232,7 +233,8 @@ TEST_CASE("the scenes that people have", "[flatten]") {
     }
     int scenes = 0;
     for (const auto &entry : std::filesystem::recursive_directory_iterator(folder)) {
-        if (entry.path().extension() != ".xml") continue;
+        if (entry.path().extension() != ".xml")
+            continue;
         INFO(entry.path());
         scenes++;
         const SceneDescription description = load_scene(entry.path());
@@ -247,7 +249,8 @@ TEST_CASE("the scenes that people have", "[flatten]") {
             CHECK(scene.triangles.size() == triangles);
             CHECK(scene.emitters.size() == lights);
             CHECK(scene.features["tree"] == (lanes == 1 || triangles > OPAL_LISTED_TRIANGLES));
-            if (triangles > 1000) CHECK(scene.sah_cost < 6);
+            if (triangles > 1000)
+                CHECK(scene.sah_cost < 6);
         }
     }
     CHECK(scenes > 0);
@@ -301,7 +304,8 @@ TEST_CASE("the largest triangles are listed beside the tree, each triangle is in
     lit.point_lights.push_back({{0, 0, -1}, {1, 1, 1}, {}});
     CHECK(flatten(lit, 8).settings.listed_to_light.faces == 1);
 
-    // A lamp in the middle of the scene does not block its own light, nor do two in one plane; one above the other may, and so may a mirror there.
+    // A lamp in the middle of the scene does not block its own light, nor do two in one plane; one above the other may,
+    // and so may a mirror there.
     const auto blocking = [&](std::vector<double> lamps, double mirror) {
         std::vector<Mesh> meshes{diffuse(grid)};
         const auto add = [&](double x, double z, bool shines) {
@@ -327,8 +331,10 @@ TEST_CASE("two triangles are one face only where they make a convex quadrilatera
     const std::array<unsigned, 3> front{0, 1, 2};
     const auto faces = [&](Vec3 far, std::array<unsigned, 3> second) {
         // A larger triangle below everything keeps the frame the same.
-        const FlatScene scene = flatten(scene_of({diffuse(mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, far}, {front, second})),
-                                                  diffuse(mesh_of({{-4, -4, -1}, {4, -4, -1}, {0, 4, -1}}, {{0, 1, 2}}))}), 8);
+        const FlatScene scene =
+            flatten(scene_of({diffuse(mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, far}, {front, second})),
+                              diffuse(mesh_of({{-4, -4, -1}, {4, -4, -1}, {0, 4, -1}}, {{0, 1, 2}}))}),
+                    8);
         size_t triangles = 0;
         for (uint i = 0; i < scene.listed_faces.size(); i++)
             triangles += triangles_of_face(scene, i).size();
@@ -339,13 +345,13 @@ TEST_CASE("two triangles are one face only where they make a convex quadrilatera
     CHECK(faces({1, 1, 0}, {1, 3, 2}) == 2);
     CHECK(faces({1, 1, 0}, {3, 2, 1}) == 2);
     CHECK(faces({1, 1, 0}, {2, 1, 3}) == 2);
-    CHECK(faces({0.6, 0.7, 0}, {1, 3, 2}) == 2);      // no parallelogram
-    CHECK(faces({3, 2, 0}, {1, 3, 2}) == 2);          // the second one is the larger
-    CHECK(faces({1, 1, 0}, {1, 2, 3}) == 3);          // they face opposite ways
-    CHECK(faces({1, 1, 1e-5}, {1, 3, 2}) == 3);       // not plane
-    CHECK(faces({0.5, 0.5001, 0}, {1, 3, 2}) == 3);   // the second one is a sliver
-    CHECK(faces({1, -0.5, 0}, {1, 3, 2}) == 3);       // reflex at B
-    CHECK(faces({2, 0, 0}, {1, 3, 2}) == 3);          // straight at B
-    CHECK(faces({0.2, 0.2, 0}, {1, 3, 2}) == 3);      // one covers the other
-    CHECK(faces({1, 1, 0}, {0, 1, 3}) == 3);          // likewise
+    CHECK(faces({0.6, 0.7, 0}, {1, 3, 2}) == 2);    // no parallelogram
+    CHECK(faces({3, 2, 0}, {1, 3, 2}) == 2);        // the second one is the larger
+    CHECK(faces({1, 1, 0}, {1, 2, 3}) == 3);        // they face opposite ways
+    CHECK(faces({1, 1, 1e-5}, {1, 3, 2}) == 3);     // not plane
+    CHECK(faces({0.5, 0.5001, 0}, {1, 3, 2}) == 3); // the second one is a sliver
+    CHECK(faces({1, -0.5, 0}, {1, 3, 2}) == 3);     // reflex at B
+    CHECK(faces({2, 0, 0}, {1, 3, 2}) == 3);        // straight at B
+    CHECK(faces({0.2, 0.2, 0}, {1, 3, 2}) == 3);    // one covers the other
+    CHECK(faces({1, 1, 0}, {0, 1, 3}) == 3);        // likewise
 }

@@ -1,4 +1,5 @@
-// Images and their files: what is written is what is read, and what cannot be written is said, with nothing left behind.
+// Images and their files: what is written is what is read, and what cannot be written is said, with nothing left
+// behind.
 #include "base/error.h"
 #include "image/metrics.h"
 #include "support/scratch.h"
@@ -69,7 +70,8 @@ TEST_CASE("An EXR keeps every bit of every layer and its metadata", "[image]") {
     CHECK(read.height == 3);
     REQUIRE(read.layers.size() == image.layers.size());
     for (const Layer &layer : image.layers)
-        CHECK(std::memcmp(read.get(layer.name).values.data(), layer.values.data(), layer.values.size() * sizeof(float)) == 0);
+        CHECK(std::memcmp(read.get(layer.name).values.data(), layer.values.data(),
+                          layer.values.size() * sizeof(float)) == 0);
     for (const auto &[name, text] : image.metadata)
         CHECK(read.metadata.at(name) == text);
     CHECK(files_in(folder.path()) == 1);
@@ -115,7 +117,8 @@ TEST_CASE("The sRGB curve joins its two pieces", "[image]") {
 
 TEST_CASE("What cannot be written is said before rendering, and nothing is left behind", "[image]") {
     const ScratchFolder folder;
-    CHECK_THROWS_WITH(check_writable(folder / "none/a.exr"), Catch::Contains("there is no folder " + (folder / "none").string()));
+    CHECK_THROWS_WITH(check_writable(folder / "none/a.exr"),
+                      Catch::Contains("there is no folder " + (folder / "none").string()));
     folder.write("file", "");
     CHECK_THROWS_WITH(check_writable(folder / "file/a.exr"), Catch::Contains("is not a folder"));
     CHECK_THROWS_WITH(check_writable(folder.path()), Catch::Contains("is a folder"));
@@ -144,7 +147,8 @@ TEST_CASE("A full disk leaves the old file and no other", "[image]") {
     Image noise = gradient(200, 200);
     for (size_t i = 0; i < noise.layers[0].values.size(); ++i) // does not compress
         noise.layers[0].values[i] = std::sin(1e6f * static_cast<float>(i * i));
-    CHECK_THROWS_WITH(write_exr(noise, folder / "image.exr"), Catch::Contains("image.exr: cannot be written: No space left on device"));
+    CHECK_THROWS_WITH(write_exr(noise, folder / "image.exr"),
+                      Catch::Contains("image.exr: cannot be written: No space left on device"));
     CHECK(test::read_text(folder / "image.exr") == "old");
     CHECK(files_in(folder.path()) == 1);
     umount(folder.path().c_str());

@@ -1,6 +1,7 @@
-#include "scene/load.h"
+#include "read/nori/load.h"
 #include "base/log.h"
-#include "scene/test_scene.h"
+#include "read/nori/tests.h"
+#include "strategies/check.h"
 #include "support/error_of.h"
 #include "support/scratch.h"
 

@@ -1,4 +1,4 @@
-#include "scene/obj.h"
+#include "read/obj.h"
 #include "base/log.h"
 #include "support/error_of.h"
 #include "support/scratch.h"
@@ -83,7 +83,8 @@ bool same_corner(const TriangleMesh &mesh, TriangleMesh::Corner corner, const Po
     Vec3 n{point[3], point[4], point[5]};
     const double size = length(n);
     const Vec3 given = corner.normal == OPAL_NONE ? Vec3{} : mesh.normals[corner.normal];
-    return length(p - wanted) <= 1e-6 * length(wanted) && (size > 0 ? length(given - n * (1 / size)) <= 1e-6 : corner.normal == OPAL_NONE);
+    return length(p - wanted) <= 1e-6 * length(wanted) &&
+           (size > 0 ? length(given - n * (1 / size)) <= 1e-6 : corner.normal == OPAL_NONE);
 }
 
 } // namespace
@@ -92,7 +93,8 @@ TEST_CASE("well-formed files mean what tinyobjloader reads in them", "[obj]") {
     std::vector<std::filesystem::path> files;
     for (const char *folder : {"scenes", "../shared/scenes"}) {
         std::error_code missing; // a clone has no ../shared
-        for (const auto &entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(OPAL_SOURCE_DIR) / folder, missing))
+        for (const auto &entry :
+             std::filesystem::recursive_directory_iterator(std::filesystem::path(OPAL_SOURCE_DIR) / folder, missing))
             if (entry.path().extension() == ".obj")
                 files.push_back(entry.path());
     }
@@ -104,7 +106,8 @@ TEST_CASE("well-formed files mean what tinyobjloader reads in them", "[obj]") {
         size_t next = 0, found = 0; // those without area are left out of the mesh
         for (const auto &triangle : mesh.triangles) {
             const auto matches = [&](const std::array<Point, 3> &other) {
-                return same_corner(mesh, triangle[0], other[0]) && same_corner(mesh, triangle[1], other[1]) && same_corner(mesh, triangle[2], other[2]);
+                return same_corner(mesh, triangle[0], other[0]) && same_corner(mesh, triangle[1], other[1]) &&
+                       same_corner(mesh, triangle[2], other[2]);
             };
             while (next < expected.size() && !matches(expected[next]))
                 ++next;

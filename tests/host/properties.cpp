@@ -1,4 +1,4 @@
-#include "scene/properties.h"
+#include "read/nori/properties.h"
 #include "base/log.h"
 #include "support/error_of.h"
 

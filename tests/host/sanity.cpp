@@ -1,6 +1,6 @@
 // Warnings where single precision does not hold, each at its line of the scene.
-#include "flatten/sanity.h"
-#include "scene/load.h"
+#include "flatten/precision_warnings.h"
+#include "read/nori/load.h"
 #include "support/scratch.h"
 
 #include <catch2/catch.hpp>
@@ -15,11 +15,13 @@ std::vector<std::string> warnings_of(const std::string &camera, const std::strin
     const ScratchFolder folder;
     folder.write("speck.obj", "v 0 0 0\nv 1e-4 0 0\nv 0 1e-4 0\nf 1 2 3\n");
     folder.write("dust.obj", "v 0 0 0\nv 1e-15 0 0\nv 0 1e-15 0\nf 1 2 3\n");
-    const auto file = folder.write("scene.xml", R"(<scene><integrator type="path_mis"/>
+    const auto file =
+        folder.write("scene.xml", R"(<scene><integrator type="path_mis"/>
 <mesh type="parallelogram"><point name="origin" value="-1 -1 0"/><vector name="u" value="2 0 0"/><vector name="v" value="0 2 0"/></mesh>
 <mesh type="parallelogram"><point name="origin" value="-1 -1 1"/><vector name="u" value="2 0 0"/><vector name="v" value="0 2 0"/>
 )" + more + "\n" + R"(<emitter type="area"><color name="radiance" value="1 1 1"/></emitter></mesh>
-<camera type="perspective"><transform name="toWorld"><lookat origin=")" + camera + R"(" target="0 0 0" up="0 0 1"/></transform></camera></scene>)");
+<camera type="perspective"><transform name="toWorld"><lookat origin=")" +
+                                      camera + R"(" target="0 0 0" up="0 0 1"/></transform></camera></scene>)");
     const SceneDescription scene = load_scene(file);
     std::vector<std::string> lines = sanity_warnings(scene, flatten(scene, 1));
     for (std::string &line : lines)
@@ -46,20 +48,39 @@ TEST_CASE("An ordinary scene brings no warning", "[sanity]") {
 }
 
 TEST_CASE("What makes light from nothing, or nothing of light, is told with its line", "[sanity]") {
-    check_one(warnings_of(near, R"(<bsdf type="diffuse"><color name="albedo" value="0.5 1.1 0.5"/></bsdf>)"), "4:", "albedo 1.1 is above 1");
-    check_one(warnings_of(near, R"(<bsdf type="phong"><color name="kd" value="0.9 0.9 0.9"/><color name="ks" value="1.4 1.4 1.4"/></bsdf>)"), "4:", "reflect 1.15");
-    check_one(warnings_of(near, R"(<bsdf type="dielectric"><float name="intIOR" value="1.3"/><float name="extIOR" value="1.3"/></bsdf>)"), "4:", "both 1.3");
-    check_one(warnings_of(near, R"(<bsdf type="microfacet"><float name="intIOR" value="1.3"/><float name="extIOR" value="1.3"/></bsdf>)"), "4:", "both 1.3");
+    check_one(warnings_of(near, R"(<bsdf type="diffuse"><color name="albedo" value="0.5 1.1 0.5"/></bsdf>)"),
+              "4:", "albedo 1.1 is above 1");
+    check_one(
+        warnings_of(
+            near,
+            R"(<bsdf type="phong"><color name="kd" value="0.9 0.9 0.9"/><color name="ks" value="1.4 1.4 1.4"/></bsdf>)"),
+        "4:", "reflect 1.15");
+    check_one(
+        warnings_of(
+            near,
+            R"(<bsdf type="dielectric"><float name="intIOR" value="1.3"/><float name="extIOR" value="1.3"/></bsdf>)"),
+        "4:", "both 1.3");
+    check_one(
+        warnings_of(
+            near,
+            R"(<bsdf type="microfacet"><float name="intIOR" value="1.3"/><float name="extIOR" value="1.3"/></bsdf>)"),
+        "4:", "both 1.3");
     const auto dust = warnings_of(near, R"(</mesh><mesh type="obj"><string name="filename" value="dust.obj"/>)");
     REQUIRE(dust.size() == 2); // small, too
     CHECK_THAT(dust[1], Catch::StartsWith("scene.xml:4:") && Catch::Contains("no area"));
 }
 
 TEST_CASE("Where single precision does not hold is told with its line", "[sanity]") {
-    check_one(warnings_of(near, R"(<bsdf type="microfacet"><float name="alpha" value="1e-7"/></bsdf>)"), "4:", "alpha 1e-07");
+    check_one(warnings_of(near, R"(<bsdf type="microfacet"><float name="alpha" value="1e-7"/></bsdf>)"),
+              "4:", "alpha 1e-07");
     check_one(warnings_of(near, R"(<bsdf type="phong"><float name="n" value="1e9"/></bsdf>)"), "4:", "n 1e+09");
-    check_one(warnings_of(near, R"(</mesh><mesh type="obj"><string name="filename" value="speck.obj"/>)"), "4:", "speck.obj is 5.0e-05 of the scene's size");
-    check_one(warnings_of(near, R"(<emitter type="area"><color name="radiance" value="1e19 1e19 1e19"/></emitter></mesh><mesh type="parallelogram">
-<point name="origin" value="-1 -1 0.5"/><vector name="u" value="2 0 0"/><vector name="v" value="0 2 0"/>)"), "3:", "radiance 1.0e+19");
+    check_one(warnings_of(near, R"(</mesh><mesh type="obj"><string name="filename" value="speck.obj"/>)"),
+              "4:", "speck.obj is 5.0e-05 of the scene's size");
+    check_one(
+        warnings_of(
+            near,
+            R"(<emitter type="area"><color name="radiance" value="1e19 1e19 1e19"/></emitter></mesh><mesh type="parallelogram">
+<point name="origin" value="-1 -1 0.5"/><vector name="u" value="2 0 0"/><vector name="v" value="0 2 0"/>)"),
+        "3:", "radiance 1.0e+19");
     check_one(warnings_of("0 -1e5 1", ""), "6:", "5e+04 sizes");
 }

@@ -1,5 +1,5 @@
 // The scenes of scenes/: each loads without leniency, and its surfaces and lights face the way they are meant to.
-#include "scene/load.h"
+#include "read/nori/load.h"
 
 #include <catch2/catch.hpp>
 

@@ -27,12 +27,12 @@ TEST_CASE("An include is expanded in place, once, between #line directives", "[s
         {"c.h", "c\n"},
     }};
     CHECK(sources.expand("a.cl", 4) == "#line 1 \"cl/a.cl\"\none\n"
-                                    "#line 1 \"cl/b.h\"\n"
-                                    "#line 1 \"cl/c.h\"\nc\n"
-                                    "#line 2 \"cl/b.h\"\nb\n"
-                                    "#line 3 \"cl/a.cl\"\ntwo\n"
-                                    "\n" // c.h, a second time
-                                    "three\n");
+                                       "#line 1 \"cl/b.h\"\n"
+                                       "#line 1 \"cl/c.h\"\nc\n"
+                                       "#line 2 \"cl/b.h\"\nb\n"
+                                       "#line 3 \"cl/a.cl\"\ntwo\n"
+                                       "\n" // c.h, a second time
+                                       "three\n");
 }
 
 TEST_CASE("What only one lane needs leaves an empty line in programs of more", "[sources]") {
@@ -69,10 +69,11 @@ TEST_CASE("The program text defines width, precision, every feature and every ax
     options.math = MathMode::fast;
     options.kernels = "kernels/k.cl";
     const std::string text = program_text(features, options, sources);
-    CHECK_THAT(text, Catch::StartsWith("#define LANES 8\n#define OPAL_DOUBLE 0\n#define OPAL_FAST 1\n#define OPAL_COUNT_TESTS 0\n"
-                                       "#define OPAL_TWICE_traversal 0\n#define OPAL_TWICE_sampling 0\n"
-                                       "#define OPAL_HAS_tree 1\n#define OPAL_HAS_wide_filter 0\n"
-                                       "#define OPAL_AXIS_integrator -1\n#define OPAL_AXIS_lighting 2\n"));
+    CHECK_THAT(text, Catch::StartsWith(
+                         "#define LANES 8\n#define OPAL_DOUBLE 0\n#define OPAL_FAST 1\n#define OPAL_COUNT_TESTS 0\n"
+                         "#define OPAL_TWICE_traversal 0\n#define OPAL_TWICE_sampling 0\n"
+                         "#define OPAL_HAS_tree 1\n#define OPAL_HAS_wide_filter 0\n"
+                         "#define OPAL_AXIS_integrator -1\n#define OPAL_AXIS_lighting 2\n"));
     CHECK_THAT(text, Catch::Contains("#define OPAL_AXIS_sampler -1\n"));
     CHECK_THAT(text, Catch::Contains("\n#line 1 \"cl/kernels/k.cl\"\nkernel void k() {}\n"));
     CHECK(program_text(features, options, sources) == text);

@@ -1,7 +1,8 @@
 #include "scene/strategy.h"
 #include "base/log.h"
-#include "scene/load.h"
+#include "read/nori/load.h"
 #include "scene/options.h"
+#include "strategies/check.h"
 #include "support/error_of.h"
 
 #include <catch2/catch.hpp>

@@ -1,9 +1,9 @@
 // The figures and the page of a sweep, from replicates whose truth is known.
 #include "base/base64.h"
 #include "support/scratch.h"
+#include "sweep/convergence_plot.h"
 #include "sweep/page.h"
 #include "sweep/reference.h"
-#include "sweep/svg.h"
 
 #include <catch2/catch.hpp>
 
@@ -23,7 +23,8 @@ StrategyRecord strategy_of(const std::string &label, double scale, unsigned seed
     for (unsigned spp : {4u, 16u, 64u}) {
         s.points.push_back({spp, {}});
         for (unsigned r = 0; r < 6; r++)
-            s.points.back().replicates.push_back({r, spp * noise(engine), scale / spp * noise(engine), 2 * scale / spp * noise(engine), 1 + 0.01 * (noise(engine) - 1)});
+            s.points.back().replicates.push_back({r, spp * noise(engine), scale / spp * noise(engine),
+                                                  2 * scale / spp * noise(engine), 1 + 0.01 * (noise(engine) - 1)});
     }
     return s;
 }
@@ -54,7 +55,8 @@ TEST_CASE("Slope, cost, ratios and bias of replicates whose truth is known", "[s
     for (Replicate &r : record.strategies[1].points.back().replicates)
         r.mean_luminance *= 1.02;
     CHECK(summarise(record).strategies[1].bias_p < 1e-6);
-    CHECK_THAT(verdict(record, summarise(record)).back(), Catch::StartsWith("quick is biased: its mean luminance is +2"));
+    CHECK_THAT(verdict(record, summarise(record)).back(),
+               Catch::StartsWith("quick is biased: its mean luminance is +2"));
 }
 
 TEST_CASE("The page is one file whose text is escaped", "[sweep_page]") {
@@ -62,7 +64,8 @@ TEST_CASE("The page is one file whose text is escaped", "[sweep_page]") {
     const ScratchFolder folder;
     folder.write("reference.png", "a picture");
     const std::string page = html_page(record, summarise(record), folder.path());
-    CHECK_THAT(page, Catch::Contains("slow &amp; steady needs ") && Catch::Contains("quick is the fastest") && Catch::Contains("a&lt;b&gt;"));
+    CHECK_THAT(page, Catch::Contains("slow &amp; steady needs ") && Catch::Contains("quick is the fastest") &&
+                         Catch::Contains("a&lt;b&gt;"));
     CHECK(page.find("<b>.xml") == std::string::npos);
     for (const char *outside : {"http", "src=\"/", "<link", "@import", ">nan", " nan", "-nan", ">inf", " inf "}) {
         const size_t found = page.find(outside);

@@ -1,6 +1,6 @@
-#include "scene/transforms.h"
+#include "read/nori/transforms.h"
 #include "base/math.h"
-#include "scene/properties.h"
+#include "read/nori/properties.h"
 #include "support/error_of.h"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-#include "scene/xml.h"
+#include "read/xml.h"
 #include "support/error_of.h"
 #include "support/scratch.h"
 

@@ -27,4 +27,6 @@ TEST_CASE("Interpolated normals point away from the middle", "[analytic]") {
     require_all_pass(check_smooth_normals(Sources::embedded(), test_seed(5)));
 }
 
-TEST_CASE("Discrete choices are right to one part in a million", "[analytic]") { require_all_pass(check_counted(Sources::embedded(), 0)); }
+TEST_CASE("Discrete choices are right to one part in a million", "[analytic]") {
+    require_all_pass(check_counted(Sources::embedded(), 0));
+}

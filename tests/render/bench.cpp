@@ -51,11 +51,13 @@ struct Dump {
 Dump dump_of(const std::string &scene, const std::string &kind, const std::string &more = "") {
     const ScratchFolder folder;
     const auto file = [&](const char *name) { return (folder / name).string(); };
-    const Outcome outcome = bench("rays " + scene + " --kind " + kind + " --rays 4000 --runs 2 --json " + file("json") + " --dump-rays " + file("rays") +
-                                  " --dump-hits " + file("hits") + " --dump-triangles " + file("triangles") + more);
+    const Outcome outcome =
+        bench("rays " + scene + " --kind " + kind + " --rays 4000 --runs 2 --json " + file("json") + " --dump-rays " +
+              file("rays") + " --dump-hits " + file("hits") + " --dump-triangles " + file("triangles") + more);
     INFO(outcome.err);
     REQUIRE(outcome.exit_code == 0);
-    Dump dump{records<Ray>(file("rays")), records<Hit>(file("hits")), records<Triangle>(file("triangles"), 4), json::parse(read_text(file("json")))};
+    Dump dump{records<Ray>(file("rays")), records<Hit>(file("hits")), records<Triangle>(file("triangles"), 4),
+              json::parse(read_text(file("json")))};
     CHECK(records<uint32_t>(file("triangles"))[0] == dump.triangles.size());
     CHECK(dump.hits.size() == dump.rays.size());
     CHECK(dump.stats["rays"] == dump.rays.size());
@@ -63,8 +65,12 @@ Dump dump_of(const std::string &scene, const std::string &kind, const std::strin
     return dump;
 }
 
-Point minus(const float (&a)[3], const float (&b)[3]) { return {double(a[0]) - b[0], double(a[1]) - b[1], double(a[2]) - b[2]}; }
-Point cross(Point a, Point b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
+Point minus(const float (&a)[3], const float (&b)[3]) {
+    return {double(a[0]) - b[0], double(a[1]) - b[1], double(a[2]) - b[2]};
+}
+Point cross(Point a, Point b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
 double dot(Point a, Point b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // Where a ray meets a triangle's plane, and the smallest of the weights there (Moeller and Trumbore 1997, in double).
@@ -72,13 +78,15 @@ struct Meeting {
     double t, u, v, inside;
 };
 Meeting meet(const Ray &ray, const Triangle &p) {
-    const Point e1 = minus(p.corner[1], p.corner[0]), e2 = minus(p.corner[2], p.corner[0]), s = minus(ray.o, p.corner[0]);
+    const Point e1 = minus(p.corner[1], p.corner[0]), e2 = minus(p.corner[2], p.corner[0]),
+                s = minus(ray.o, p.corner[0]);
     const Point d{ray.d[0], ray.d[1], ray.d[2]}, h = cross(d, e2), q = cross(s, e1);
     const double determinant = dot(e1, h), u = dot(s, h) / determinant, v = dot(d, q) / determinant;
     return {dot(e2, q) / determinant, u, v, std::min({u, v, 1 - u - v})};
 }
 
-// Rays whose answer no rounding explains. Single precision tells about 2e-6 of coordinates up to 1, and 1e-4 of a weight.
+// Rays whose answer no rounding explains. Single precision tells about 2e-6 of coordinates up to 1, and 1e-4 of a
+// weight.
 size_t wrong_hits(const Dump &dump, bool any) {
     size_t wrong = 0;
     for (size_t i = 0; i < dump.rays.size(); i++) {
@@ -101,7 +109,8 @@ size_t wrong_hits(const Dump &dump, bool any) {
         } else {
             const Meeting m = meet(ray, dump.triangles.at(size_t(hit.triangle)));
             const double slack = 1e-4 * std::abs(m.t) + 2e-6 / length;
-            wrong += std::abs(m.t - hit.t) > slack || m.inside < -1e-4 || hit.t > sure || std::abs(m.u - hit.u) > 1e-3 || std::abs(m.v - hit.v) > 1e-3;
+            wrong += std::abs(m.t - hit.t) > slack || m.inside < -1e-4 || hit.t > sure ||
+                     std::abs(m.u - hit.u) > 1e-3 || std::abs(m.v - hit.v) > 1e-3;
         }
     }
     return wrong;
@@ -125,7 +134,8 @@ TEST_CASE("Dumped hits are those of the dumped rays and triangles, listed and in
 }
 
 TEST_CASE("Widths answer the same rays alike", "[bench]") {
-    const Dump one = dump_of(scenes + "mesh_light.xml", "bounce", " --lanes 1"), eight = dump_of(scenes + "mesh_light.xml", "bounce", " --lanes 8");
+    const Dump one = dump_of(scenes + "mesh_light.xml", "bounce", " --lanes 1"),
+               eight = dump_of(scenes + "mesh_light.xml", "bounce", " --lanes 8");
     CHECK(wrong_hits(one, false) == 0);
     REQUIRE(one.rays.size() == eight.rays.size());
     size_t different = 0;
@@ -155,13 +165,15 @@ TEST_CASE("Figures of all kinds, and of one", "[bench]") {
     INFO(outcome.err);
     REQUIRE(outcome.exit_code == 0);
     const json all = json::parse(read_text(file));
-    for (const char *key : {"scene", "device", "driver", "lanes", "triangles", "nodes", "blocks", "hierarchy_bytes", "bytes_per_triangle", "sah_cost", "build_seconds", "compile_seconds"})
+    for (const char *key : {"scene", "device", "driver", "lanes", "triangles", "nodes", "blocks", "hierarchy_bytes",
+                            "bytes_per_triangle", "sah_cost", "build_seconds", "compile_seconds"})
         CHECK(all.contains(key));
     CHECK(!all.contains("mrays_per_second"));
     for (const char *kind : {"camera", "bounce", "shadow"}) {
         const json &row = all["kinds"][kind];
         INFO(row.dump());
-        CHECK((row["least"] > 0.0 && row["least"] <= row["mrays_per_second"] && row["mrays_per_second"] <= row["greatest"]));
+        CHECK((row["least"] > 0.0 && row["least"] <= row["mrays_per_second"] &&
+               row["mrays_per_second"] <= row["greatest"]));
         CHECK(row["mrays_per_cpu_second"] > 0.0);
         CHECK((row["node_tests_per_ray"] >= 1.0 && row["node_tests_per_ray"] < 100.0));
         CHECK((row["triangle_tests_per_ray"] > 0.0 && row["triangle_tests_per_ray"] < double(all["triangles"])));
@@ -174,8 +186,11 @@ TEST_CASE("Figures of all kinds, and of one", "[bench]") {
 TEST_CASE("Degenerate triangles are in no dump; without a light shadow rays go anywhere", "[bench]") {
     const ScratchFolder folder;
     folder.write("two.obj", "v -1 -1 5\nv 1 -1 5\nv 0 1 5\nv 0 0 4\nf 1 2 3\nf 1 2 2\nf 1 4 3\n");
-    const std::string scene = folder.write("two.xml", "<scene><integrator type=\"normals\"/><camera type=\"perspective\"/><mesh type=\"obj\">"
-                                                      "<string name=\"filename\" value=\"two.obj\"/></mesh></scene>").string();
+    const std::string scene =
+        folder
+            .write("two.xml", "<scene><integrator type=\"normals\"/><camera type=\"perspective\"/><mesh type=\"obj\">"
+                              "<string name=\"filename\" value=\"two.obj\"/></mesh></scene>")
+            .string();
     const Dump dump = dump_of(scene, "camera");
     CHECK(dump.triangles.size() == 2);
     CHECK(wrong_hits(dump, false) == 0);
@@ -185,14 +200,17 @@ TEST_CASE("Degenerate triangles are in no dump; without a light shadow rays go a
 TEST_CASE("What makes no sense is refused, and nothing is written", "[bench]") {
     const ScratchFolder folder;
     const std::string scene = scenes + "cbox_mis.xml", out = (folder / "out").string();
-    for (const auto &[arguments, reason] : {std::pair<std::string, std::string>{"rays " + scene + " --dump-rays " + out, "--dump-rays is of one kind of rays: name it with --kind; available: camera, bounce, shadow"},
-                                            {"rays " + scene + " --dump-hits " + out, "--dump-hits"},
-                                            {"rays " + scene + " --dump-triangles " + out, "--dump-triangles"},
-                                            {"rays " + scene + " --kind camra --dump-rays " + out, "available: camera, bounce, shadow"},
-                                            {"rays " + scene + " --kind camera --json " + out + "/no/where", "no/where"},
-                                            {"rays " + scene + " --rays 0", "--rays"},
-                                            {"rays " + out + ".xml", "out.xml"},
-                                            {"ray " + scene, "subcommand is required"}}) {
+    for (const auto &[arguments, reason] :
+         {std::pair<std::string, std::string>{
+              "rays " + scene + " --dump-rays " + out,
+              "--dump-rays is of one kind of rays: name it with --kind; available: camera, bounce, shadow"},
+          {"rays " + scene + " --dump-hits " + out, "--dump-hits"},
+          {"rays " + scene + " --dump-triangles " + out, "--dump-triangles"},
+          {"rays " + scene + " --kind camra --dump-rays " + out, "available: camera, bounce, shadow"},
+          {"rays " + scene + " --kind camera --json " + out + "/no/where", "no/where"},
+          {"rays " + scene + " --rays 0", "--rays"},
+          {"rays " + out + ".xml", "out.xml"},
+          {"ray " + scene, "subcommand is required"}}) {
         const Outcome outcome = bench(arguments);
         INFO(arguments << "\n" << outcome.err);
         CHECK(outcome.exit_code == 1);
@@ -200,8 +218,11 @@ TEST_CASE("What makes no sense is refused, and nothing is written", "[bench]") {
         CHECK(std::filesystem::is_empty(folder.path()));
     }
     folder.write("away.obj", "v -1 -1 -5\nv 1 -1 -5\nv 0 1 -5\nf 1 2 3\n");
-    const std::string away = folder.write("away.xml", "<scene><integrator type=\"normals\"/><camera type=\"perspective\"/><mesh type=\"obj\">"
-                                                      "<string name=\"filename\" value=\"away.obj\"/></mesh></scene>").string();
+    const std::string away =
+        folder
+            .write("away.xml", "<scene><integrator type=\"normals\"/><camera type=\"perspective\"/><mesh type=\"obj\">"
+                               "<string name=\"filename\" value=\"away.obj\"/></mesh></scene>")
+            .string();
     CHECK_THAT(bench("rays " + away + " --kind bounce").err, Catch::Contains("no bounce rays"));
     const Outcome all = bench("rays " + away + " --runs 1 --rays 1000");
     CHECK(all.exit_code == 0);

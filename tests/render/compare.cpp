@@ -58,7 +58,8 @@ TEST_CASE("Two images of one mean pass, and the figures are those of their noise
     CHECK(report["rel_mse_floor"].get<double>() == Approx(1e-4).epsilon(0.02));
     CHECK_FALSE(report["test"]["differ"].get<bool>());
     const Image map = read_exr(place.folder / "d.exr");
-    CHECK(map.get("R").values[5] == Approx(noisy(1, 1).get("R").values[5] - noisy(1, 2).get("R").values[5]).margin(1e-6));
+    CHECK(map.get("R").values[5] ==
+          Approx(noisy(1, 1).get("R").values[5] - noisy(1, 2).get("R").values[5]).margin(1e-6));
     CHECK(map.find("z.G"));
     CHECK(std::filesystem::exists(place.folder / "d.png"));
 }
@@ -77,7 +78,8 @@ TEST_CASE("A bright patch is found, with its place", "[compare]") {
     CHECK(region["test"]["region"]["x"] == 16);
     CHECK(region["test"]["region"]["y"] == 8);
     CHECK(region["test"]["region"]["tiles"] == 2);
-    CHECK(region["test"]["region"]["mean_image"].get<double>() > region["test"]["region"]["mean_reference"].get<double>());
+    CHECK(region["test"]["region"]["mean_image"].get<double>() >
+          region["test"]["region"]["mean_reference"].get<double>());
 }
 
 TEST_CASE("An image without variance is compared, and the missing test is told", "[compare]") {
@@ -87,7 +89,8 @@ TEST_CASE("An image without variance is compared, and the missing test is told",
     place.put("plain.exr", plain);
     place.put("b.exr", noisy(1, 2));
     place.put("single.exr", noisy(1, 3, 1));
-    CHECK(place.json("b.exr plain.exr")["untested"].get<std::string>().find("plain.exr holds no layer variance.R") == 0);
+    CHECK(place.json("b.exr plain.exr")["untested"].get<std::string>().find("plain.exr holds no layer variance.R") ==
+          0);
     CHECK(place.json("single.exr b.exr")["untested"] == "single.exr has one sample a pixel and so no variance");
     Image uneven = noisy(1, 4); // as of a render that was stopped
     uneven.metadata["opal.single_sample_pixels"] = "7";
@@ -100,7 +103,9 @@ TEST_CASE("An image without variance is compared, and the missing test is told",
 TEST_CASE("What cannot be compared is refused with what differs", "[compare]") {
     const Place place;
     place.put("a.exr", noisy(1, 1));
-    place.put("small.exr", Image{8, 4, {{"R", std::vector<float>(32)}, {"G", std::vector<float>(32)}, {"B", std::vector<float>(32)}}, {}});
+    place.put(
+        "small.exr",
+        Image{8, 4, {{"R", std::vector<float>(32)}, {"G", std::vector<float>(32)}, {"B", std::vector<float>(32)}}, {}});
     Image more = noisy(1, 1);
     more.layers.push_back({"depth", std::vector<float>(32 * 24)});
     place.put("more.exr", more);

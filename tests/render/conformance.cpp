@@ -18,7 +18,8 @@ Outcome run_tests(const std::string &arguments) {
 }
 
 // A copy of the kernels in which `from`, which must be there, reads `to`.
-std::string mutant(const ScratchFolder &folder, const std::string &file, const std::string &from, const std::string &to) {
+std::string mutant(const ScratchFolder &folder, const std::string &file, const std::string &from,
+                   const std::string &to) {
     const std::filesystem::path copy = folder / "cl";
     std::filesystem::copy(OPAL_SOURCE_DIR "/cl", copy, std::filesystem::copy_options::recursive);
     std::string text = read_text(copy / file);
@@ -45,8 +46,9 @@ TEST_CASE("All cases of tests/cases/conformance pass", "[conformance]") {
 
 TEST_CASE("A wrong reference is rejected, and the JSON says so", "[conformance]") {
     const ScratchFolder folder;
-    const std::string test = folder.write("wrong.xml", "<test type='ttest'><string name='angles' value='0 30'/>"
-                                                       "<string name='references' value='0.5 0.51'/><bsdf type='diffuse'/></test>");
+    const std::string test =
+        folder.write("wrong.xml", "<test type='ttest'><string name='angles' value='0 30'/>"
+                                  "<string name='references' value='0.5 0.51'/><bsdf type='diffuse'/></test>");
     const Outcome outcome = run_tests(test + " --json " + (folder / "out.json").string());
     CHECK(outcome.exit_code == 1);
     const auto json = nlohmann::json::parse(read_text(folder / "out.json"));
@@ -69,19 +71,21 @@ TEST_CASE("Wrong kernels are rejected", "[conformance]") {
         int exit_code = 1;
     };
     const Mutant mutants[] = {
-        {"bsdfs/diffuse.cl", "2 * wo.z", "(wo.z < 2 ? 2 * wo.z : (real)(NAN))", "triangle_light.xml", 100000, 0}, // the same
-        {"bsdfs/diffuse.cl", "2 * wo.z", "1", "triangle_light.xml", 400000},                              // a dropped cosine
+        {"bsdfs/diffuse.cl", "2 * wo.z", "(wo.z < 2 ? 2 * wo.z : (real)(NAN))", "triangle_light.xml", 100000,
+         0},                                                                 // the same
+        {"bsdfs/diffuse.cl", "2 * wo.z", "1", "triangle_light.xml", 400000}, // a dropped cosine
         {"bsdfs/diffuse.cl", "2 * wo.z", "(u.x < R(0.999) ? 2 * wo.z : (real)(NAN))", "microfacet_albedo.xml", 100000},
-        {"emitter.cl", "{ return GATHER_V3(scene->emitters, id, .radiance); }", "{ return v3_all((real)(NAN)); }", "furnace.xml", 1000},
-        {"lighting.cl", "square(s.t) / (cosine", "s.t / (cosine", "furnace.xml", 100000},              // MIS mixes measures
-        {"warp.cl", "R(0.5) * log1p", "R(0.52) * log1p", "chi2_bsdfs.xml", 200000},                       // another exponent
-        {"bsdfs/phong.cl", "b.base_chance * square_to_cosine_hemisphere_pdf(wo) +", "R(1.02) * b.base_chance * square_to_cosine_hemisphere_pdf(wo) +",
-         "chi2_bsdfs.xml", 200000},
+        {"emitter.cl", "{ return GATHER_V3(scene->emitters, id, .radiance); }", "{ return v3_all((real)(NAN)); }",
+         "furnace.xml", 1000},
+        {"lighting.cl", "square(s.t) / (cosine", "s.t / (cosine", "furnace.xml", 100000}, // MIS mixes measures
+        {"warp.cl", "R(0.5) * log1p", "R(0.52) * log1p", "chi2_bsdfs.xml", 200000},       // another exponent
+        {"bsdfs/phong.cl", "b.base_chance * square_to_cosine_hemisphere_pdf(wo) +",
+         "R(1.02) * b.base_chance * square_to_cosine_hemisphere_pdf(wo) +", "chi2_bsdfs.xml", 200000},
     };
     for (const Mutant &m : mutants) {
         const ScratchFolder folder;
-        const Outcome outcome = run_tests((cases / m.test).string() + " --significance 1e-4 --samples " + std::to_string(m.samples) +
-                                          mutant(folder, m.file, m.from, m.to));
+        const Outcome outcome = run_tests((cases / m.test).string() + " --significance 1e-4 --samples " +
+                                          std::to_string(m.samples) + mutant(folder, m.file, m.from, m.to));
         INFO(m.file << ": " << m.to << "\n" << outcome.out << outcome.err);
         CHECK(outcome.exit_code == m.exit_code);
         CHECK_THAT(outcome.err, !Catch::Contains("error:"));

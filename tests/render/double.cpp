@@ -1,5 +1,5 @@
-// Single against double precision on the same random numbers: the same paths, so that samples differ by rounding alone. And doubles
-// at 1, 4, 8 and 16 lanes: what their rounding changes is below a float.
+// Single against double precision on the same random numbers: the same paths, so that samples differ by rounding alone.
+// And doubles at 1, 4, 8 and 16 lanes: what their rounding changes is below a float.
 #include "support/device.h"
 #include "support/mutants.h"
 #include "support/pictures.h"
@@ -16,7 +16,8 @@ namespace {
 constexpr unsigned spp = 16;
 
 // Each sample by itself: R, G, B of every pixel, sample by sample.
-std::vector<double> samples_of(const SceneDescription &scene, MathMode math, int lanes = 0, const Sources &from = Sources::embedded()) {
+std::vector<double> samples_of(const SceneDescription &scene, MathMode math, int lanes = 0,
+                               const Sources &from = Sources::embedded()) {
     Shot shot;
     shot.math = math;
     shot.lanes = lanes;
@@ -55,7 +56,8 @@ double relative_difference_of_means(const std::vector<double> &a, const std::vec
     return std::abs(sum_a - sum_b) / sum_b;
 }
 
-// The gallery has every BSDF and both kinds of area light; with another cube of glass it is too large to do without a tree.
+// The gallery has every BSDF and both kinds of area light; with another cube of glass it is too large to do without a
+// tree.
 SceneDescription gallery_with_tree() {
     SceneDescription scene = gallery(32, 24);
     scene.meshes.push_back(made_of(cube({-0.1, 0.2, 0.5}, 0.15), bsdf_record(BSDF_dielectric)));
@@ -73,20 +75,25 @@ bool doubles() {
 TEST_CASE("Single precision walks the paths of double precision", "[double]") {
     if (!doubles())
         return;
-    for (const Overrides &how : std::vector<Overrides>{{{"lighting", "mis"}},
-                                                       {{"lighting", "bsdf"}, {"sampler", "stratified"}, {"max-depth", "8"}}, // long paths through glass are chaotic
-                                                       {{"lighting", "emitter"}, {"sampler", "sobol"}, {"emitter-choice", "power"}, {"rr", "throughput-eta"}},
-                                                       {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "one-sample"}},
-                                                       {{"integrator", "whitted"}}})
+    for (const Overrides &how : std::vector<Overrides>{
+             {{"lighting", "mis"}},
+             {{"lighting", "bsdf"},
+              {"sampler", "stratified"},
+              {"max-depth", "8"}}, // long paths through glass are chaotic
+             {{"lighting", "emitter"}, {"sampler", "sobol"}, {"emitter-choice", "power"}, {"rr", "throughput-eta"}},
+             {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "one-sample"}},
+             {{"integrator", "whitted"}}})
         for (const bool tree : {false, true}) {
             if (tree && how != Overrides{{"lighting", "mis"}})
                 continue;
             const SceneDescription room = tree ? gallery_with_tree() : gallery(32, 24), scene = with(room, how);
-            const auto single = samples_of(scene, MathMode::precise), oracle = samples_of(scene, MathMode::double_precision);
+            const auto single = samples_of(scene, MathMode::precise),
+                       oracle = samples_of(scene, MathMode::double_precision);
             const double off = share_off(single, oracle, 1e-3), means = relative_difference_of_means(single, oracle);
-            INFO(how.begin()->second << ", " << room.meshes.size() << " meshes: " << off << " of the samples off by 1e-3, means by " << means);
-            CHECK(off < 5e-4);    // what a last bit sends elsewhere: an edge, a lobe, a total reflection
-            CHECK(means < 2e-4);  // a few of those hit a lamp
+            INFO(how.begin()->second << ", " << room.meshes.size() << " meshes: " << off
+                                     << " of the samples off by 1e-3, means by " << means);
+            CHECK(off < 5e-4);   // what a last bit sends elsewhere: an edge, a lobe, a total reflection
+            CHECK(means < 2e-4); // a few of those hit a lamp
         }
 }
 
@@ -108,7 +115,8 @@ TEST_CASE("Doubles at every width agree to far below a float", "[double]") {
 TEST_CASE("What makes single precision walk other paths is seen", "[double]") {
     if (!doubles())
         return;
-    const Mutant jump{"frames that jump on upright walls", "math.cl", "n.z < FRAME_JUMP ? (real)(-1) : (real)(1)", "copysign((real)(1), n.z)"};
+    const Mutant jump{"frames that jump on upright walls", "math.cl", "n.z < FRAME_JUMP ? (real)(-1) : (real)(1)",
+                      "copysign((real)(1), n.z)"};
     const Sources wrong = mutated(Sources::embedded(), jump);
     // Walls whose normals have z = 0 but for the last bit: turned and slanted, so that it is a difference of products
     SceneDescription scene = gallery(32, 24);
@@ -116,8 +124,10 @@ TEST_CASE("What makes single precision walk other paths is seen", "[double]") {
     for (Mesh &mesh : scene.meshes)
         if (auto *p = std::get_if<Parallelogram>(&mesh.shape))
             *p = {turned.point(p->origin), turned.vector(p->u), turned.vector(p->v + p->u * 0.37)};
-    const double right = share_off(samples_of(scene, MathMode::precise), samples_of(scene, MathMode::double_precision), 1e-3);
-    const double mutant = share_off(samples_of(scene, MathMode::precise, 0, wrong), samples_of(scene, MathMode::double_precision, 0, wrong), 1e-3);
+    const double right =
+        share_off(samples_of(scene, MathMode::precise), samples_of(scene, MathMode::double_precision), 1e-3);
+    const double mutant = share_off(samples_of(scene, MathMode::precise, 0, wrong),
+                                    samples_of(scene, MathMode::double_precision, 0, wrong), 1e-3);
     INFO(right << " of the samples off, " << mutant << " with the mutant");
     CHECK(right < 5e-4);
     CHECK(mutant > 1e-2);

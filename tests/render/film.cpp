@@ -19,7 +19,8 @@ namespace {
 
 // Every sample of pixels 5, 16, 27, ... of a pass of one sample is NaN or, where `what` says so, infinite.
 Mutant spoiled(const std::string &what) {
-    return {"pixels " + what, "kernels/render.cl", "slot[0] = r[lane];", "slot[0] = place[lane] % 11u == 5u ? " + what + " : r[lane];"};
+    return {"pixels " + what, "kernels/render.cl", "slot[0] = r[lane];",
+            "slot[0] = place[lane] % 11u == 5u ? " + what + " : r[lane];"};
 }
 
 } // namespace
@@ -58,7 +59,8 @@ TEST_CASE("The error of a film whose pixels differ in their counts is that of it
 }
 
 TEST_CASE("Invalid samples are counted, placed and left out of the mean", "[film]") {
-    const SceneDescription scene = with(furnace(0.5, 1), {{"lighting", "bsdf"}, {"hemisphere", "cosine"}, {"rr", "off"}, {"max-depth", "3"}});
+    const SceneDescription scene =
+        with(furnace(0.5, 1), {{"lighting", "bsdf"}, {"hemisphere", "cosine"}, {"rr", "off"}, {"max-depth", "3"}});
     for (const char *what : {"NAN", "INFINITY", "-INFINITY"}) {
         INFO(what);
         const Sources sources = mutated(Sources::embedded(), spoiled(what));
@@ -86,20 +88,24 @@ TEST_CASE("Invalid samples are counted, placed and left out of the mean", "[film
 }
 
 TEST_CASE("What a BSDF or a light makes of no number ends the path and is counted", "[film]") {
-    const Mutant weight{"weight", "bsdfs/diffuse.cl", "return bsdf_sample_of(wo, v3_scale(b.albedo, wi.z > 0 ? weight : (real)(0))",
+    const Mutant weight{"weight", "bsdfs/diffuse.cl",
+                        "return bsdf_sample_of(wo, v3_scale(b.albedo, wi.z > 0 ? weight : (real)(0))",
                         "return bsdf_sample_of(wo, v3_of((real)(NAN), b.albedo.y, b.albedo.z)"};
-    const Mutant light{"light", "bsdfs/diffuse.cl", "return v3_scale(b.albedo, above ? (real)(INV_PI) : (real)(0));", "return v3_of((real)(NAN), b.albedo.y, b.albedo.z);"};
+    const Mutant light{"light", "bsdfs/diffuse.cl", "return v3_scale(b.albedo, above ? (real)(INV_PI) : (real)(0));",
+                       "return v3_of((real)(NAN), b.albedo.y, b.albedo.z);"};
     for (const auto &[mutant, lighting] : {std::pair{weight, "bsdf"}, std::pair{light, "emitter"}})
         for (const char *math : {"precise", "fast"}) {
             INFO(mutant.name << ", " << math);
-            const SceneDescription scene = with(furnace(0.5, 1), {{"lighting", lighting}, {"rr", "off"}, {"max-depth", "2"}, {"math", math}});
+            const SceneDescription scene =
+                with(furnace(0.5, 1), {{"lighting", lighting}, {"rr", "off"}, {"max-depth", "2"}, {"math", math}});
             const Sources sources = mutated(Sources::embedded(), mutant);
             Shot shot;
             shot.sources = &sources;
             const Film film = render(scene, 4, 1, shot);
             const size_t samples = 4 * film.count.size();
             CHECK(film.invalid <= samples);
-            CHECK(film.invalid >= (mutant.name == "weight" ? samples : samples / 2)); // some points on the light are behind the surface
+            CHECK(film.invalid >=
+                  (mutant.name == "weight" ? samples : samples / 2)); // some points on the light are behind the surface
         }
 }
 
@@ -108,11 +114,14 @@ TEST_CASE("The binary tells of invalid samples, in words and in the JSON", "[fil
     for (const auto &[name, text] : mutated(Sources::embedded(), spoiled("NAN")).files)
         folder.write("cl/" + name, text);
     const std::string json = folder / "statistics.json";
-    const Outcome outcome = run_shell(std::string(OPAL_BINARY) + " render " OPAL_SOURCE_DIR "/scenes/furnace.xml --width 8 --height 8 --spp 1 --no-png -o " +
-                                      std::string(folder / "out.exr") + " --json " + json + " --cl-dir " + std::string(folder / "cl"));
+    const Outcome outcome =
+        run_shell(std::string(OPAL_BINARY) +
+                  " render " OPAL_SOURCE_DIR "/scenes/furnace.xml --width 8 --height 8 --spp 1 --no-png -o " +
+                  std::string(folder / "out.exr") + " --json " + json + " --cl-dir " + std::string(folder / "cl"));
     INFO(outcome.err);
     CHECK(outcome.exit_code == 0);
-    CHECK_THAT(outcome.err, Catch::Contains("6 samples were NaN or infinite") && Catch::Contains("pixel (5, 0) sample 0"));
+    CHECK_THAT(outcome.err,
+               Catch::Contains("6 samples were NaN or infinite") && Catch::Contains("pixel (5, 0) sample 0"));
     const nlohmann::json report = nlohmann::json::parse(read_text(json));
     CHECK(report["invalid_samples"] == 6);
     CHECK(report["invalid_places"].size() == 6);

@@ -1,5 +1,6 @@
-// 1, 4, 8 and 16 lanes render the same picture: the same random numbers, other roundings. Only a path that a rounding sends elsewhere
-// may differ, and few do. One lane walks the tree where more test every triangle, so this holds the two intersectors together too.
+// 1, 4, 8 and 16 lanes render the same picture: the same random numbers, other roundings. Only a path that a rounding
+// sends elsewhere may differ, and few do. One lane walks the tree where more test every triangle, so this holds the two
+// intersectors together too.
 #include "support/device.h"
 #include "support/pictures.h"
 #include "support/rooms.h"
@@ -13,8 +14,8 @@ using namespace opal::test;
 namespace {
 
 struct Difference {
-    size_t pixels_off = 0;  // by more than 1e-4
-    double means = 0;       // relative, over the other pixels
+    size_t pixels_off = 0; // by more than 1e-4
+    double means = 0;      // relative, over the other pixels
 };
 
 Difference difference(const Film &a, const Film &b) {
@@ -23,7 +24,8 @@ Difference difference(const Film &a, const Film &b) {
     for (size_t p = 0; p < a.sum.size(); p++) {
         bool off = a.count[p] != b.count[p];
         for (int c = 0; c < 3; c++)
-            off = off || std::abs(a.sum[p][c] - b.sum[p][c]) > 1e-4 * std::max(std::abs(a.sum[p][c]), std::abs(b.sum[p][c]));
+            off = off ||
+                  std::abs(a.sum[p][c] - b.sum[p][c]) > 1e-4 * std::max(std::abs(a.sum[p][c]), std::abs(b.sum[p][c]));
         d.pixels_off += off;
         for (int c = 0; c < 3 && !off; c++) {
             sum_a += a.sum[p][c];
@@ -61,14 +63,15 @@ SceneDescription strategy_of(SceneDescription scene, const Overrides &how) {
 } // namespace
 
 TEST_CASE("The same picture at every width, in every integrator", "[lanes]") {
-    const std::vector<Overrides> strategies = {{{"integrator", "normals"}},
-                                               {{"integrator", "ao"}, {"hemisphere", "cosine"}},
-                                               {{"integrator", "simple"}},
-                                               {{"integrator", "whitted"}},
-                                               {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "one-sample"}},
-                                               {{"integrator", "path_mats"}, {"sampler", "stratified"}},
-                                               {{"integrator", "path_ems"}, {"sampler", "sobol"}},
-                                               {{"integrator", "path_mis"}, {"mis", "power"}}};
+    const std::vector<Overrides> strategies = {
+        {{"integrator", "normals"}},
+        {{"integrator", "ao"}, {"hemisphere", "cosine"}},
+        {{"integrator", "simple"}},
+        {{"integrator", "whitted"}},
+        {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "one-sample"}},
+        {{"integrator", "path_mats"}, {"sampler", "stratified"}},
+        {{"integrator", "path_ems"}, {"sampler", "sobol"}},
+        {{"integrator", "path_mis"}, {"mis", "power"}}};
     SceneDescription scene = large_gallery(25, 21); // not a multiple of anything
     scene.simple_light = {{0.1, 0.5, -0.2}, {30, 20, 10}};
     scene.spp = 8;
@@ -79,7 +82,8 @@ TEST_CASE("The same picture at every width, in every integrator", "[lanes]") {
         CHECK(one.invalid == 0);
         for (int lanes : {4, 8, 16}) {
             const Difference d = difference(one, at_lanes(chosen, lanes));
-            INFO(how.at("integrator") << " at " << lanes << " lanes: " << d.pixels_off << " pixels off, means differ by " << d.means);
+            INFO(how.at("integrator") << " at " << lanes << " lanes: " << d.pixels_off
+                                      << " pixels off, means differ by " << d.means);
             CHECK(d.pixels_off <= 3);
             CHECK(d.means < 1e-6);
         }
@@ -100,12 +104,14 @@ TEST_CASE("The same picture at every width without a tree, and by the tree", "[l
 }
 
 TEST_CASE("The general kernel renders what the specialised ones do", "[lanes]") {
-    const std::vector<Overrides> strategies = {{{"integrator", "ao"}, {"hemisphere", "uniform"}},
-                                               {{"integrator", "whitted"}},
-                                               {{"integrator", "direct_lighting"}, {"lighting", "emitter"}, {"emitter-choice", "power"}},
-                                               {{"integrator", "path"}, {"lighting", "bsdf"}, {"rr", "fixed"}},
-                                               {{"integrator", "path"}, {"lighting", "mis"}, {"triangle-choice", "uniform"}, {"sampler", "sobol"}}};
-    // In double, where the device has it: the general kernel lists no faces, and what it rounds otherwise long paths through glass magnify.
+    const std::vector<Overrides> strategies = {
+        {{"integrator", "ao"}, {"hemisphere", "uniform"}},
+        {{"integrator", "whitted"}},
+        {{"integrator", "direct_lighting"}, {"lighting", "emitter"}, {"emitter-choice", "power"}},
+        {{"integrator", "path"}, {"lighting", "bsdf"}, {"rr", "fixed"}},
+        {{"integrator", "path"}, {"lighting", "mis"}, {"triangle-choice", "uniform"}, {"sampler", "sobol"}}};
+    // In double, where the device has it: the general kernel lists no faces, and what it rounds otherwise long paths
+    // through glass magnify.
     const MathMode math = device().info.fp64 ? MathMode::double_precision : MathMode::precise;
     SceneDescription scene = large_gallery(25, 21); // with a tree, as the general kernel has
     for (Overrides how : strategies) {

@@ -12,8 +12,8 @@ using namespace opal::test;
 
 namespace {
 
-// Of comparisons that are independent of each other and by continuous statistics: not the exact ones, and not Sobol's, whose
-// error is smaller than the variance says.
+// Of comparisons that are independent of each other and by continuous statistics: not the exact ones, and not Sobol's,
+// whose error is smaller than the variance says.
 void add(std::vector<double> &values, const Findings &findings) {
     for (const Finding &finding : findings)
         if (finding.p > 0 && finding.p < 1 && finding.what.find("sobol") == std::string::npos)
@@ -27,7 +27,8 @@ TEST_CASE("The p-values of the suite are uniform", "[p_values]") {
     std::vector<double> values;
     for (unsigned round = 0; round < 3; round++) {
         const unsigned seed = test_seed(400 + round);
-        for (const Check &check : {Check(check_independence), Check(check_warps), Check(check_bsdfs), Check(check_albedos), Check(check_furnace), Check(check_triangle_light)})
+        for (const Check &check : {Check(check_independence), Check(check_warps), Check(check_bsdfs),
+                                   Check(check_albedos), Check(check_furnace), Check(check_triangle_light)})
             add(values, check(sources, seed));
     }
     const stats::TestResult result = stats::ks_uniform_test(values);
@@ -40,7 +41,8 @@ TEST_CASE("The p-values of the suite are uniform", "[p_values]") {
 TEST_CASE("Two seeds of one strategy are not declared different more often than stated", "[p_values]") {
     constexpr unsigned spp = 32;
     constexpr int pairs = 100;
-    const Overrides how = GENERATE(Overrides{{"lighting", "bsdf"}}, Overrides{{"lighting", "emitter"}}, Overrides{{"lighting", "mis"}, {"mis", "power"}},
+    const Overrides how = GENERATE(Overrides{{"lighting", "bsdf"}}, Overrides{{"lighting", "emitter"}},
+                                   Overrides{{"lighting", "mis"}, {"mis", "power"}},
                                    Overrides{{"lighting", "mis"}, {"sampler", "sobol"}});
     CAPTURE(how.begin()->second, how.rbegin()->second);
     SceneDescription scene = with(gallery(), how);
@@ -51,7 +53,9 @@ TEST_CASE("Two seeds of one strategy are not declared different more often than 
         renderer.render(spp);
         return image_of(renderer.film(), true);
     };
-    const auto test = [&](const Image &a, const Image &b) { return stats::tile_test(estimate_of(a, spp, spp - 1), estimate_of(b, spp, spp - 1)); };
+    const auto test = [&](const Image &a, const Image &b) {
+        return stats::tile_test(estimate_of(a, spp, spp - 1), estimate_of(b, spp, spp - 1));
+    };
     int declared = 0, seen = 0;
     double smallest = 1;
     for (unsigned pair = 0; pair < pairs; pair++) {
@@ -66,7 +70,8 @@ TEST_CASE("Two seeds of one strategy are not declared different more often than 
                     value *= 1.3f;
         seen += test(a, b).rejected(0.05);
     }
-    INFO(declared << " of 100 pairs declared different at 5 %, smallest p " << smallest << "; " << seen << " of those 30 % apart");
+    INFO(declared << " of 100 pairs declared different at 5 %, smallest p " << smallest << "; " << seen
+                  << " of those 30 % apart");
     CHECK((declared <= 5 || stats::binomial_test(declared, pairs, 0.05).p_value >= check_level));
     CHECK(stats::sidak_p(smallest, pairs) >= check_level);
     CHECK(seen >= 90);

@@ -1,4 +1,5 @@
-// What is rendered does not depend on how the samples are cut into passes and launches, nor on where a render was stopped.
+// What is rendered does not depend on how the samples are cut into passes and launches, nor on where a render was
+// stopped.
 #include "support/device.h"
 #include "support/pictures.h"
 #include "support/rooms.h"
@@ -17,7 +18,8 @@ template <class T> bool same_bits(const std::vector<T> &a, const std::vector<T> 
 }
 
 bool same_bits(const Film &a, const Film &b) {
-    return same_bits(a.sum, b.sum) && same_bits(a.squares, b.squares) && same_bits(a.weighted, b.weighted) && same_bits(a.count, b.count);
+    return same_bits(a.sum, b.sum) && same_bits(a.squares, b.squares) && same_bits(a.weighted, b.weighted) &&
+           same_bits(a.count, b.count);
 }
 
 Film in_passes(const SceneDescription &scene, unsigned spp, unsigned most) {
@@ -29,7 +31,8 @@ Film in_passes(const SceneDescription &scene, unsigned spp, unsigned most) {
 } // namespace
 
 TEST_CASE("Passes cut differently give the same bits", "[passes]") {
-    for (const auto &[sampler, filter] : {std::pair{"independent", Filter{}}, {"stratified", Filter{FILTER_gaussian, 2, 0.5}}, {"sobol", Filter{}}}) {
+    for (const auto &[sampler, filter] :
+         {std::pair{"independent", Filter{}}, {"stratified", Filter{FILTER_gaussian, 2, 0.5}}, {"sobol", Filter{}}}) {
         SceneDescription scene = with(gallery(13, 9), {{"sampler", sampler}});
         scene.camera.filter = filter;
         scene.spp = 23;

@@ -1,5 +1,5 @@
 // Whole images against references of another renderer, with their variances (../shared/references), tile by tile.
-#include "scene/load.h"
+#include "read/nori/load.h"
 #include "stats/hypothesis.h"
 #include "support/checks.h"
 #include "support/device.h"
@@ -41,15 +41,17 @@ TEST_CASE("Pictures are those of the references, tile by tile", "[references]") 
         SceneDescription scene = load_scene(shared / "scenes" / (name + ".xml"));
         scene.camera.width = row["size"][0];
         scene.camera.height = row["size"][1];
-        // By the strategy of the least noise: a few thousand samples a tile that hardly ever meet a light prove nothing.
+        // By the strategy of the least noise: a few thousand samples a tile that hardly ever meet a light prove
+        // nothing.
         scene = with(scene, {{"lighting", "mis"}, {"mis", "power"}});
         scene.spp = spp;
         const Film film = render(scene, spp, test_seed(300));
         INFO(name);
         CHECK(film.invalid == 0);
         const Image image = image_of(film, true), reference = read_exr(shared / "references" / file);
-        const Verdict verdict = same_picture("reference_" + std::filesystem::path(file).stem().string(), estimated(image, spp),
-                                             {reference, reference_samples, reference_dof}, level);
+        const Verdict verdict =
+            same_picture("reference_" + std::filesystem::path(file).stem().string(), estimated(image, spp),
+                         {reference, reference_samples, reference_dof}, level);
         INFO(verdict.message);
         CHECK(verdict.agrees);
     }
@@ -72,7 +74,8 @@ TEST_CASE("A picture that is off is found and its evidence left", "[references]"
                     for (int x = 0; x < 24; x++)
                         layer.values[size_t(y) * size_t(off.width) + size_t(x)] *= 1.03f;
     setenv("OPAL_EVIDENCE", folder.path().c_str(), 1);
-    const Verdict verdict = same_picture("off", {off, reference_samples, reference_dof}, {reference, reference_samples, reference_dof}, check_level);
+    const Verdict verdict = same_picture("off", {off, reference_samples, reference_dof},
+                                         {reference, reference_samples, reference_dof}, check_level);
     unsetenv("OPAL_EVIDENCE");
     INFO(verdict.message);
     CHECK_FALSE(verdict.agrees);

@@ -14,7 +14,8 @@ using namespace opal::test;
 
 namespace {
 
-// A camera that looks at a light of radiance (1, 2, 3) filling the view: the image is that colour, whatever the strategy.
+// A camera that looks at a light of radiance (1, 2, 3) filling the view: the image is that colour, whatever the
+// strategy.
 const char *const scene_text = R"(<scene>
   <integrator type="path_mis"/>
   <sampler type="independent"><integer name="sampleCount" value="4"/></sampler>
@@ -40,7 +41,8 @@ struct Place {
 };
 
 // A copy of cl/ in which `to` is written where `from` was first.
-std::string changed_kernels(const ScratchFolder &folder, const std::string &file, const std::string &from, const std::string &to) {
+std::string changed_kernels(const ScratchFolder &folder, const std::string &file, const std::string &from,
+                            const std::string &to) {
     std::filesystem::copy(OPAL_SOURCE_DIR "/cl", folder / "cl", std::filesystem::copy_options::recursive);
     std::string text = read_text(folder / ("cl/" + file));
     const size_t place = text.find(from);
@@ -72,8 +74,9 @@ TEST_CASE("A render leaves EXR and PNG in the current folder, named after the sc
     CHECK(image.get("variance.B").values.front() == Approx(0).margin(1e-9));
     CHECK(std::filesystem::exists(place.folder / "plain.png"));
     const auto stats = nlohmann::json::parse(read_text(place.folder / "stats.json"));
-    for (const char *key : {"scene", "device", "driver", "lanes", "strategy", "width", "height", "spp", "seed", "mean_rgb", "mean_luminance",
-                            "stderr_luminance", "invalid_samples", "samples_per_second", "seconds"})
+    for (const char *key :
+         {"scene", "device", "driver", "lanes", "strategy", "width", "height", "spp", "seed", "mean_rgb",
+          "mean_luminance", "stderr_luminance", "invalid_samples", "samples_per_second", "seconds"})
         CHECK(stats.contains(key));
     for (const char *key : {"load", "bvh", "compile", "render", "write"})
         CHECK(stats["seconds"].contains(key));
@@ -136,8 +139,9 @@ TEST_CASE("Ctrl-C writes what there is and exits with a code of its own", "[rend
     const Place place;
     const std::string started = place.folder / "started";
     // The shell tells its process id, then becomes opal.
-    const std::string command = "echo $$ >" + started + ".tmp && mv " + started + ".tmp " + started + " && exec " + OPAL_BINARY + " " +
-                                place.scene + " --spp 1000000000 -o " + (place.folder / "out.exr").string();
+    const std::string command = "echo $$ >" + started + ".tmp && mv " + started + ".tmp " + started + " && exec " +
+                                OPAL_BINARY + " " + place.scene + " --spp 1000000000 -o " +
+                                (place.folder / "out.exr").string();
     Outcome outcome;
     std::thread render([&] { outcome = run_shell("sh -c '" + command + "'"); });
     while (!std::filesystem::exists(started))
@@ -156,7 +160,8 @@ TEST_CASE("What a driver remarks on the kernels is no error, and told by --verbo
     const Place place;
     const ScratchFolder folder;
     // The typedef makes the text another one: PoCL's cache, which keeps what was said, does not see directives.
-    const std::string remark = "a remark of the test", text = "#warning " + remark + "\ntypedef int a_remark_of_the_test;\n#include";
+    const std::string remark = "a remark of the test",
+                      text = "#warning " + remark + "\ntypedef int a_remark_of_the_test;\n#include";
     const std::string arguments = "--no-png --cl-dir " + changed_kernels(folder, "kernels/render.cl", "#include", text);
     const Outcome told = run_shell("export OPAL_KERNEL_FLAGS= && " + place.render("--verbose " + arguments));
     INFO(told.err);
@@ -179,7 +184,8 @@ TEST_CASE("Fast math warns where its functions are coarse, and only there", "[re
     };
     CHECK_FALSE(warned(run_shell(place.render("--math fast"))));
     const ScratchFolder folder;
-    const std::string coarse = " --cl-dir " + changed_kernels(folder, "kernels/selftest_list.h", "MATH(exp, exp(x)", "MATH(exp, exp(x) * (real)(1.0005)");
+    const std::string coarse = " --cl-dir " + changed_kernels(folder, "kernels/selftest_list.h", "MATH(exp, exp(x)",
+                                                              "MATH(exp, exp(x) * (real)(1.0005)");
     const Outcome fast = run_shell(place.render("--math fast" + coarse));
     CHECK(warned(fast));
     CHECK_THAT(fast.err, Catch::Contains("error of exp, ulp") && !Catch::Contains("error of log"));

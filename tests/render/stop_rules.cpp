@@ -59,10 +59,11 @@ TEST_CASE("The interval of --target-error covers the true mean as often as it sa
         met += s.stderr_luminance <= target * s.mean_luminance;
         means.add(s.mean_luminance);
     }
-    INFO(covered << " of 100 intervals cover; " << met << " met the target; mean " << means.mean() << " true " << truth.mean_luminance);
+    INFO(covered << " of 100 intervals cover; " << met << " met the target; mean " << means.mean() << " true "
+                 << truth.mean_luminance);
     CHECK_FALSE(stats::binomial_test(covered, runs, 0.95).rejected(1e-4));
     CHECK_FALSE(stats::t_test(means.sample(), truth.mean_luminance).rejected(1e-4)); // unbiased
-    CHECK(met >= 60); // the margin of the pilot
+    CHECK(met >= 60);                                                                // the margin of the pilot
 }
 
 TEST_CASE("--target-error takes at most the samples that are allowed, and says so", "[stop_rules]") {

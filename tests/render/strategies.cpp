@@ -1,5 +1,6 @@
-// Every strategy against every other on one scene: Welch's test per tile and on the whole (the evidence of what disagrees stays
-// in evidence/), by the specialised kernels that a user gets. check_agreement does the same in the general one.
+// Every strategy against every other on one scene: Welch's test per tile and on the whole (the evidence of what
+// disagrees stays in evidence/), by the specialised kernels that a user gets. check_agreement does the same in the
+// general one.
 #include "stats/hypothesis.h"
 #include "support/checks.h"
 #include "support/device.h"
@@ -35,8 +36,9 @@ void require_agreement(const SceneDescription &scene, unsigned spp, const std::v
     const double pairs = double(images.size() * (images.size() - 1)) / 2;
     for (size_t i = 0; i < images.size(); i++)
         for (size_t j = 0; j < i; j++) {
-            const Verdict verdict = same_picture(name_of(strategies[i]) + "--" + name_of(strategies[j]), estimated(images[i], spp),
-                                                 estimated(images[j], spp), stats::sidak_level(check_level, pairs));
+            const Verdict verdict =
+                same_picture(name_of(strategies[i]) + "--" + name_of(strategies[j]), estimated(images[i], spp),
+                             estimated(images[j], spp), stats::sidak_level(check_level, pairs));
             INFO(verdict.message);
             CHECK(verdict.agrees);
         }
@@ -51,24 +53,31 @@ TEST_CASE("Strategies of one expectation agree in the general kernel", "[strateg
 TEST_CASE("All ways to trace paths give one picture", "[strategies]") {
     SceneDescription scene = gallery();
     scene.strategy.max_depth = 8; // so that --rr off ends, in a closed room
-    require_agreement(scene, 128,
-                      {{{"lighting", "bsdf"}, {"hemisphere", "uniform"}, {"rr", "throughput"}},
-                       {{"lighting", "bsdf"}, {"hemisphere", "cosine"}, {"sampler", "sobol"}, {"rr", "off"}},
-                       {{"lighting", "emitter"}, {"rr", "fixed"}, {"rr-prob", "0.8"}},
-                       {{"lighting", "emitter"}, {"emitter-choice", "power"}, {"rr", "throughput-eta"}},
-                       {{"lighting", "emitter"}, {"triangle-choice", "uniform"}, {"sampler", "stratified"}, {"rr", "off"}},
-                       {{"lighting", "mis"}, {"mis", "balance"}, {"rr", "throughput"}, {"rr-depth", "1"}},
-                       {{"lighting", "mis"}, {"mis", "power"}, {"hemisphere", "uniform"}, {"rr", "throughput-eta"}},
-                       {{"lighting", "mis"}, {"mis", "power"}, {"emitter-choice", "power"}, {"triangle-choice", "uniform"}, {"sampler", "sobol"}, {"rr", "fixed"}},
-                       {{"lighting", "mis"}, {"math", "fast"}, {"rr", "throughput"}}});
+    require_agreement(
+        scene, 128,
+        {{{"lighting", "bsdf"}, {"hemisphere", "uniform"}, {"rr", "throughput"}},
+         {{"lighting", "bsdf"}, {"hemisphere", "cosine"}, {"sampler", "sobol"}, {"rr", "off"}},
+         {{"lighting", "emitter"}, {"rr", "fixed"}, {"rr-prob", "0.8"}},
+         {{"lighting", "emitter"}, {"emitter-choice", "power"}, {"rr", "throughput-eta"}},
+         {{"lighting", "emitter"}, {"triangle-choice", "uniform"}, {"sampler", "stratified"}, {"rr", "off"}},
+         {{"lighting", "mis"}, {"mis", "balance"}, {"rr", "throughput"}, {"rr-depth", "1"}},
+         {{"lighting", "mis"}, {"mis", "power"}, {"hemisphere", "uniform"}, {"rr", "throughput-eta"}},
+         {{"lighting", "mis"},
+          {"mis", "power"},
+          {"emitter-choice", "power"},
+          {"triangle-choice", "uniform"},
+          {"sampler", "sobol"},
+          {"rr", "fixed"}},
+         {{"lighting", "mis"}, {"math", "fast"}, {"rr", "throughput"}}});
 }
 
 TEST_CASE("All ways to gather direct light give one picture", "[strategies]") {
-    require_agreement(matte_gallery(), 128,
-                      {{{"integrator", "direct_lighting"}, {"lighting", "bsdf"}, {"hemisphere", "cosine"}},
-                       {{"integrator", "direct_lighting"}, {"lighting", "emitter"}, {"sampler", "stratified"}},
-                       {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "one-sample"}, {"emitter-choice", "power"}},
-                       {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "power"}, {"triangle-choice", "uniform"}},
-                       {{"integrator", "whitted"}},
-                       {{"integrator", "path_mis"}, {"max-depth", "2"}, {"sampler", "sobol"}}});
+    require_agreement(
+        matte_gallery(), 128,
+        {{{"integrator", "direct_lighting"}, {"lighting", "bsdf"}, {"hemisphere", "cosine"}},
+         {{"integrator", "direct_lighting"}, {"lighting", "emitter"}, {"sampler", "stratified"}},
+         {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "one-sample"}, {"emitter-choice", "power"}},
+         {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "power"}, {"triangle-choice", "uniform"}},
+         {{"integrator", "whitted"}},
+         {{"integrator", "path_mis"}, {"max-depth", "2"}, {"sampler", "sobol"}}});
 }

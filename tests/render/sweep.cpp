@@ -49,11 +49,13 @@ TEST_CASE("A sweep ranks strategies, tells it on one page, and goes on where it 
     const Outcome first = place.sweep(what + "--replicates 3");
     INFO(first.err);
     REQUIRE(first.exit_code == 0);
-    CHECK_THAT(first.out, Catch::Contains("lighting=emitter is the fastest") && Catch::Contains("lighting=bsdf needs "));
+    CHECK_THAT(first.out,
+               Catch::Contains("lighting=emitter is the fastest") && Catch::Contains("lighting=bsdf needs "));
     const nlohmann::json record = place.record();
     REQUIRE(record["strategies"].size() == 2);
     for (const auto &strategy : record["strategies"]) {
-        const double mse16 = strategy["points"][0]["replicates"][0]["mse"], mse64 = strategy["points"][1]["replicates"][0]["mse"];
+        const double mse16 = strategy["points"][0]["replicates"][0]["mse"],
+                     mse64 = strategy["points"][1]["replicates"][0]["mse"];
         CHECK(mse16 / mse64 == Approx(4).epsilon(0.5)); // 384 pixels: the error of an MSE is some 10 %
     }
     const std::string page = read_text(place.folder / "out/index.html");
@@ -85,7 +87,8 @@ TEST_CASE("The slope of every independent unbiased strategy is -1 within its int
     const std::string integrator = GENERATE("path_mis", "direct_lighting");
     CAPTURE(integrator);
     const Place place;
-    const Outcome outcome = place.sweep("--integrator " + integrator + " --spp 32,128,512 --replicates 8 --reference-spp 32768 -o out");
+    const Outcome outcome =
+        place.sweep("--integrator " + integrator + " --spp 32,128,512 --replicates 8 --reference-spp 32768 -o out");
     INFO(outcome.err);
     REQUIRE(outcome.exit_code == 0);
     const nlohmann::json record = place.record();
@@ -138,9 +141,11 @@ TEST_CASE("What makes no sense is refused before anything is rendered", "[sweep]
     refused("--replicates 1", "an interval needs at least 2");
     refused("--spp 0", "--spp 0: possible are 1 to ");
     refused("--strategies lighting=bdsf", "unknown lighting 'bdsf'; available: bsdf, emitter, mis");
-    refused("--strategies coarse", "neither a preset (course, all) nor a list axis=value,...; axes: integrator, lighting, mis,");
+    refused("--strategies coarse",
+            "neither a preset (course, all) nor a list axis=value,...; axes: integrator, lighting, mis,");
     refused("--strategies mis=one-sample", "makes no sense");
-    refused("--strategies lighting=mis lighting=mis", "strategy 'lighting=mis' is the same as 'lighting=mis' on this scene");
+    refused("--strategies lighting=mis lighting=mis",
+            "strategy 'lighting=mis' is the same as 'lighting=mis' on this scene");
     refused("--strategies 'lighting=mis;lighting=mis,mis=balance'", "is the same as");
     refused("--strategies lighting=mis integrator=ao", "estimate different images");
     refused("--strategies lighting=mis lighting=mis,max-depth=5", "estimate different images");
@@ -156,11 +161,15 @@ TEST_CASE("What makes no sense is refused before anything is rendered", "[sweep]
 TEST_CASE("A reference of another size, scene or without colours is refused before anything is rendered", "[sweep]") {
     const Place place;
     place.folder.write("other.xml", scene_text);
-    const auto in_place = [&](const std::string &command) { return run_shell("cd " + place.folder.path().string() + " && " + OPAL_BINARY + " " + command); };
+    const auto in_place = [&](const std::string &command) {
+        return run_shell("cd " + place.folder.path().string() + " && " + OPAL_BINARY + " " + command);
+    };
     REQUIRE(in_place("lamp.xml --spp 1 --width 12 -o small.exr").exit_code == 0);
     REQUIRE(in_place("other.xml --spp 1 -o other.exr").exit_code == 0);
     write_exr(Image{24, 16, {{"Y", std::vector<float>(24 * 16)}}, {}}, place.folder / "grey.exr");
-    for (const auto &[file, reason] : {std::pair{"small.exr", "has 12 x 8 pixels, the scene 24 x 16"}, {"other.exr", "is an image of "}, {"grey.exr", "has no layer R"}}) {
+    for (const auto &[file, reason] : {std::pair{"small.exr", "has 12 x 8 pixels, the scene 24 x 16"},
+                                       {"other.exr", "is an image of "},
+                                       {"grey.exr", "has no layer R"}}) {
         const Outcome outcome = place.sweep(std::string("-o out --reference ") + file);
         INFO(outcome.err);
         CHECK(outcome.exit_code == 1);
@@ -175,8 +184,11 @@ TEST_CASE("Several devices and kinds of math are crossed, each device in a proce
         return;
     }
     const Place place;
-    const Outcome outcome = run_shell("cd " + place.folder.path().string() + " && POCL_DEVICES='pthread pthread' OCL_ICD_FILENAMES= OCL_ICD_VENDORS=" + device().info.library + " " + OPAL_BINARY +
-                                      " sweep lamp.xml --strategies lighting=emitter --math precise,fast --device 0,1 --spp 8 --replicates 2 -o out");
+    const Outcome outcome = run_shell(
+        "cd " + place.folder.path().string() +
+        " && POCL_DEVICES='pthread pthread' OCL_ICD_FILENAMES= OCL_ICD_VENDORS=" + device().info.library + " " +
+        OPAL_BINARY +
+        " sweep lamp.xml --strategies lighting=emitter --math precise,fast --device 0,1 --spp 8 --replicates 2 -o out");
     INFO(outcome.err);
     REQUIRE(outcome.exit_code == 0);
     const nlohmann::json record = place.record();
@@ -185,7 +197,8 @@ TEST_CASE("Several devices and kinds of math are crossed, each device in a proce
     for (size_t s = 0; s < 4; s++) {
         const nlohmann::json &strategy = record["strategies"][s];
         CHECK(strategy["device"] == s / 2);
-        CHECK(strategy["label"] == std::string("lighting=emitter; ") + (s % 2 ? "fast" : "precise") + " math; device " + (s / 2 ? "1" : "0"));
+        CHECK(strategy["label"] == std::string("lighting=emitter; ") + (s % 2 ? "fast" : "precise") + " math; device " +
+                                       (s / 2 ? "1" : "0"));
         CHECK(strategy["points"][0]["replicates"].size() == 2);
         CHECK(std::filesystem::exists(place.folder / ("out/equal_time_" + std::to_string(s + 1) + ".exr")));
     }

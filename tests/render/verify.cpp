@@ -1,5 +1,7 @@
 // `opal verify` as its users meet it: green on right kernels, and biases planted in wrong ones are found.
-#include "scene/combinations.h"
+#include "read/nori/load.h"
+#include "scene/options.h"
+#include "strategies/combinations.h"
 #include "support/mutants.h"
 #include "support/scratch.h"
 
@@ -33,7 +35,8 @@ struct Place {
     ScratchFolder folder;
     std::string scene = folder.write("wall.xml", scene_text).string();
     Outcome verify(const std::string &arguments) const {
-        return run_shell("cd " + folder.path().string() + " && " + OPAL_BINARY + " verify " + scene + " --json out.json " + arguments);
+        return run_shell("cd " + folder.path().string() + " && " + OPAL_BINARY + " verify " + scene +
+                         " --json out.json " + arguments);
     }
     nlohmann::json report() const { return nlohmann::json::parse(read_text(folder / "out.json")); }
     // A copy of cl/ with that mistake, as --cl-dir takes it.
@@ -73,8 +76,10 @@ TEST_CASE("A bias of 2 % in one strategy is found, and the strategy is named", "
     const Place place;
     const Mutant mutant{"uniform sampling 2 % too bright", "bsdfs/diffuse.cl", "b.use_cosine ? (real)(1) : 2 * wo.z",
                         "b.use_cosine ? (real)(1) : R(2.04) * wo.z"};
-    const Outcome outcome = place.verify("--budget 20s --strategies 'lighting=bsdf,hemisphere=cosine; lighting=bsdf,hemisphere=uniform; "
-                                         "lighting=emitter'" + place.wrong_kernels(mutant));
+    const Outcome outcome =
+        place.verify("--budget 20s --strategies 'lighting=bsdf,hemisphere=cosine; lighting=bsdf,hemisphere=uniform; "
+                     "lighting=emitter'" +
+                     place.wrong_kernels(mutant));
     INFO(outcome.out << outcome.err);
     CHECK(outcome.exit_code == 1);
     CHECK_THAT(outcome.out, Catch::Contains("DISAGREE: 2 of 3 pairs") &&
@@ -86,7 +91,8 @@ TEST_CASE("A bias of 2 % in one strategy is found, and the strategy is named", "
 
 TEST_CASE("A bias of 2 % of light sampling is found by the strategies chosen by default", "[verify]") {
     const Place place;
-    const Mutant mutant{"light samples 2 % too bright", "lighting.cl", "emitter_radiance(scene, id)), wo.z * per_density",
+    const Mutant mutant{"light samples 2 % too bright", "lighting.cl",
+                        "emitter_radiance(scene, id)), wo.z * per_density",
                         "emitter_radiance(scene, id)), R(1.02) * wo.z * per_density"};
     const Outcome outcome = place.verify("--budget 30s" + place.wrong_kernels(mutant));
     INFO(outcome.out << outcome.err);
@@ -104,7 +110,8 @@ TEST_CASE("Strategies that do not exist or make no sense are refused before rend
         CHECK_FALSE(std::filesystem::exists(place.folder / "out.json"));
     };
     refused("lighting=mis", "nothing to hold against each other: 1 strategy");
-    refused("lighting=mis;lighting=emiter", "strategy 'lighting=emiter': unknown lighting 'emiter'; did you mean 'emitter'?");
+    refused("lighting=mis;lighting=emiter",
+            "strategy 'lighting=emiter': unknown lighting 'emiter'; did you mean 'emitter'?");
     refused("lighting=mis;lihgting=bsdf", "unknown strategy option 'lihgting'");
     refused("lighting=mis;mis=one-sample", "makes no sense");
     refused("lighting=mis;lighting", "'lighting' is not AXIS=CHOICE");
@@ -133,9 +140,9 @@ TEST_CASE("The covering set holds every pair of choices that makes sense, once",
 
 TEST_CASE("Each integrator varies what it asks", "[verify]") {
     const Place place;
-    CHECK(sensible_strategies(load(place, "ao"), 100).size() == 2 * 3);      // hemisphere, sampler
-    CHECK(sensible_strategies(load(place, "normals"), 100).size() == 3);     // sampler
-    CHECK(sensible_strategies(load(place, "whitted"), 100).size() == 3);     // sampler: one emitter, no triangles
+    CHECK(sensible_strategies(load(place, "ao"), 100).size() == 2 * 3);  // hemisphere, sampler
+    CHECK(sensible_strategies(load(place, "normals"), 100).size() == 3); // sampler
+    CHECK(sensible_strategies(load(place, "whitted"), 100).size() == 3); // sampler: one emitter, no triangles
     // lighting bsdf (3 hemispheres), emitter, mis (3 heuristics x 3 hemispheres), each with 3 samplers
     CHECK(sensible_strategies(load(place, "direct_lighting"), 100).size() == 3 * (3 + 1 + 9));
     SceneDescription with_point = load(place, "direct_lighting");

@@ -1,5 +1,5 @@
-// `opal verify` on our own scenes: green as they are, and a bias of 2 % planted in one strategy of the Cornell box is found within a
-// minute, on every seed.
+// `opal verify` on our own scenes: green as they are, and a bias of 2 % planted in one strategy of the Cornell box is
+// found within a minute, on every seed.
 #include "support/mutants.h"
 #include "support/scratch.h"
 
@@ -16,11 +16,16 @@ const std::string light_hit = "v3_mul(path->throughput, emitted(scene, path, s, 
 const std::string heuristic = "1 / (1 + (CHOSEN(scene, mis, power) ? ratio * ratio : ratio))";
 
 const std::vector<Mutant> planted = {
-    {"light samples", "lighting.cl", "emitter_radiance(scene, id)), wo.z * per_density", "emitter_radiance(scene, id)), R(1.02) * wo.z * per_density"},
-    {"uniform directions", "bsdfs/diffuse.cl", "b.use_cosine ? (real)(1) : 2 * wo.z", "b.use_cosine ? (real)(1) : R(2.04) * wo.z"},
-    {"cosine directions", "bsdfs/diffuse.cl", "b.use_cosine ? (real)(1) : 2 * wo.z", "b.use_cosine ? (real)(R(1.02)) : 2 * wo.z"},
-    {"the balance heuristic", "lighting.cl", heuristic, "(CHOSEN(scene, mis, power) ? (real)(1) : (real)(R(1.02))) * " + heuristic},
-    {"light hit without light samples", "integrators/path.cl", light_hit, "v3_scale(" + light_hit + ", CHOSEN(scene, lighting, bsdf) ? (real)(R(1.02)) : (real)(1))"},
+    {"light samples", "lighting.cl", "emitter_radiance(scene, id)), wo.z * per_density",
+     "emitter_radiance(scene, id)), R(1.02) * wo.z * per_density"},
+    {"uniform directions", "bsdfs/diffuse.cl", "b.use_cosine ? (real)(1) : 2 * wo.z",
+     "b.use_cosine ? (real)(1) : R(2.04) * wo.z"},
+    {"cosine directions", "bsdfs/diffuse.cl", "b.use_cosine ? (real)(1) : 2 * wo.z",
+     "b.use_cosine ? (real)(R(1.02)) : 2 * wo.z"},
+    {"the balance heuristic", "lighting.cl", heuristic,
+     "(CHOSEN(scene, mis, power) ? (real)(1) : (real)(R(1.02))) * " + heuristic},
+    {"light hit without light samples", "integrators/path.cl", light_hit,
+     "v3_scale(" + light_hit + ", CHOSEN(scene, lighting, bsdf) ? (real)(R(1.02)) : (real)(1))"},
 };
 
 } // namespace
@@ -31,7 +36,8 @@ TEST_CASE("All strategies agree on every scene of ours", "[verify_scenes]") {
     for (const auto &entry : std::filesystem::recursive_directory_iterator(OPAL_SOURCE_DIR "/scenes")) {
         if (entry.path().extension() != ".xml" || entry.path().parent_path().filename() == "generated")
             continue;
-        const Outcome outcome = run_shell(fmt::format("cd {} && {} verify {} --budget 30s --quiet", folder.path().string(), OPAL_BINARY, entry.path().string()));
+        const Outcome outcome = run_shell(fmt::format("cd {} && {} verify {} --budget 30s --quiet",
+                                                      folder.path().string(), OPAL_BINARY, entry.path().string()));
         INFO(entry.path() << "\n" << outcome.out << outcome.err);
         CHECK(outcome.exit_code == 0);
         scenes++;
@@ -45,8 +51,9 @@ TEST_CASE("verify finds every bias of 2 % planted in the Cornell box within a mi
         for (const auto &[name, text] : mutated(Sources::embedded(), mutant).files)
             folder.write("cl/" + name, text);
         for (const int seed : {100, 200, 300}) {
-            const Outcome outcome = run_shell(fmt::format("cd {} && {} verify {}/scenes/cbox_mis.xml --budget 60s --seed {} --quiet --cl-dir cl --json out.json",
-                                                          folder.path().string(), OPAL_BINARY, OPAL_SOURCE_DIR, seed));
+            const Outcome outcome = run_shell(fmt::format(
+                "cd {} && {} verify {}/scenes/cbox_mis.xml --budget 60s --seed {} --quiet --cl-dir cl --json out.json",
+                folder.path().string(), OPAL_BINARY, OPAL_SOURCE_DIR, seed));
             INFO(mutant.name << ", seed " << seed << "\n" << outcome.out << outcome.err);
             CHECK(outcome.exit_code == 1);
             const auto report = nlohmann::json::parse(read_text(folder / "out.json"));

@@ -11,7 +11,8 @@ namespace {
 
 Outcome warp(const std::string &arguments) {
     const char *wanted = std::getenv("OPAL_TEST_DEVICE");
-    return run_shell(std::string(OPAL_BINARY) + " warp --samples 3e5 --significance 1e-5 --device " + (wanted ? wanted : "cpu") + " " + arguments);
+    return run_shell(std::string(OPAL_BINARY) + " warp --samples 3e5 --significance 1e-5 --device " +
+                     (wanted ? wanted : "cpu") + " " + arguments);
 }
 
 } // namespace
@@ -30,8 +31,10 @@ TEST_CASE("Every target of the list is accepted", "[warp_command]") {
 }
 
 TEST_CASE("Lobes are accepted at grazing incidence, narrow and wide, at one lane", "[warp_command]") {
-    for (const char *arguments : {"bsdf:microfacet --alpha 0.02 --theta 89.9", "bsdf:microfacet --alpha 1 --kd 0 --theta 80 --phi 200", "bsdf:phong --n 2000 --pd 0 --theta 70",
-                                  "beckmann --alpha 0.003", "phong_lobe --n 1e5", "light:many --triangle-choice uniform --emitter-choice power"}) {
+    for (const char *arguments :
+         {"bsdf:microfacet --alpha 0.02 --theta 89.9", "bsdf:microfacet --alpha 1 --kd 0 --theta 80 --phi 200",
+          "bsdf:phong --n 2000 --pd 0 --theta 70", "beckmann --alpha 0.003", "phong_lobe --n 1e5",
+          "light:many --triangle-choice uniform --emitter-choice power"}) {
         const Outcome outcome = warp(std::string(arguments) + " --lanes 1");
         INFO(arguments << "\n" << outcome.out << outcome.err);
         CHECK(outcome.exit_code == 0);
@@ -49,7 +52,8 @@ TEST_CASE("A wrong density is rejected", "[warp_command]") {
     };
     replace("warp.cl", "v3 square_to_cosine_hemisphere(v2 u) { return direction_of(sqrt(1 - u.x), sqrt(u.x)",
             "v3 square_to_cosine_hemisphere(v2 u) { return direction_of(1 - u.x, sqrt(u.x * (2 - u.x))");
-    replace("emitter.cl", "unit_real((u).y) < GATHER(real, (scene)->table, (first) + row_, .accept)", "(u).y < 0x80000000u");
+    replace("emitter.cl", "unit_real((u).y) < GATHER(real, (scene)->table, (first) + row_, .accept)",
+            "(u).y < 0x80000000u");
     const std::string mutated = " --cl-dir " + (folder / "cl").string();
     CHECK(warp("cosine_hemisphere" + mutated).exit_code == 1);
     CHECK(warp("light:many --emitter-choice power" + mutated).exit_code == 1);

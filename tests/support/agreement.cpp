@@ -32,17 +32,18 @@ Group path_group() {
 }
 
 Group direct_group() {
-    return {"direct",
-            matte_gallery(),
-            512,
-            {{{"integrator", "direct_lighting"}, {"lighting", "bsdf"}},
-             {{"integrator", "direct_lighting"}, {"lighting", "emitter"}},
-             {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "balance"}},
-             {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "power"}},
-             {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "one-sample"}},
-             {{"integrator", "whitted"}},
-             {{"integrator", "path_mis"}, {"max-depth", "2"}, {"emitter-choice", "power"}, {"triangle-choice", "uniform"}},
-             {{"integrator", "path_ems"}, {"max-depth", "2"}, {"triangle-choice", "uniform"}}}};
+    return {
+        "direct",
+        matte_gallery(),
+        512,
+        {{{"integrator", "direct_lighting"}, {"lighting", "bsdf"}},
+         {{"integrator", "direct_lighting"}, {"lighting", "emitter"}},
+         {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "balance"}},
+         {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "power"}},
+         {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "one-sample"}},
+         {{"integrator", "whitted"}},
+         {{"integrator", "path_mis"}, {"max-depth", "2"}, {"emitter-choice", "power"}, {"triangle-choice", "uniform"}},
+         {{"integrator", "path_ems"}, {"max-depth", "2"}, {"triangle-choice", "uniform"}}}};
 }
 
 Group occlusion_group() {
@@ -51,7 +52,10 @@ Group occlusion_group() {
         const auto *shape = std::get_if<Parallelogram>(&mesh.shape);
         return shape && shape->origin.y == 1;
     });
-    return {"occlusion", scene, 1024, {{{"integrator", "ao"}, {"hemisphere", "uniform"}}, {{"integrator", "ao"}, {"hemisphere", "cosine"}}}};
+    return {"occlusion",
+            scene,
+            1024,
+            {{{"integrator", "ao"}, {"hemisphere", "uniform"}}, {{"integrator", "ao"}, {"hemisphere", "cosine"}}}};
 }
 
 // Means of the luminance, each strategy against every other.

@@ -13,7 +13,8 @@ namespace opal::test {
 namespace {
 
 // Renders one strategy after the other in one kernel that decides at run time, so that a check costs one compilation.
-Film render_general(SceneDescription scene, const Overrides &overrides, unsigned spp, unsigned seed, const Sources &sources) {
+Film render_general(SceneDescription scene, const Overrides &overrides, unsigned spp, unsigned seed,
+                    const Sources &sources) {
     Overrides all = overrides;
     all["specialise"] = "off";
     Shot shot;
@@ -35,7 +36,8 @@ Finding mean_is(const std::string &what, const Film &film, double truth, int cha
 } // namespace
 
 const Finding &worst(const Findings &findings) {
-    return *std::min_element(findings.begin(), findings.end(), [](const Finding &a, const Finding &b) { return !(a.p >= b.p); });
+    return *std::min_element(findings.begin(), findings.end(),
+                             [](const Finding &a, const Finding &b) { return !(a.p >= b.p); });
 }
 
 bool rejected(const Findings &findings) {
@@ -61,48 +63,56 @@ Findings check_furnace(const Sources &sources, unsigned seed) {
     };
     const SceneDescription box = furnace(0.5, 1);
     for (const char *rr : {"fixed", "throughput", "throughput-eta"})
-        for (const Overrides &how : {Overrides{{"lighting", "bsdf"}, {"hemisphere", "cosine"}}, Overrides{{"lighting", "mis"}, {"mis", "balance"}},
+        for (const Overrides &how : {Overrides{{"lighting", "bsdf"}, {"hemisphere", "cosine"}},
+                                     Overrides{{"lighting", "mis"}, {"mis", "balance"}},
                                      Overrides{{"lighting", "mis"}, {"mis", "power"}, {"hemisphere", "cosine"}}}) {
             Overrides all = how;
             all["rr"] = rr;
             shows(box, all, 2);
         }
     // Without roulette every path gathers the partial sum of the geometric series, without noise.
-    shows(box, {{"lighting", "bsdf"}, {"hemisphere", "cosine"}, {"rr", "off"}, {"max-depth", "5"}}, 2 * (1 - std::pow(0.5, 5)));
+    shows(box, {{"lighting", "bsdf"}, {"hemisphere", "cosine"}, {"rr", "off"}, {"max-depth", "5"}},
+          2 * (1 - std::pow(0.5, 5)));
     return findings;
 }
 
 Findings check_glass_furnace(const Sources &sources, unsigned seed) {
-    const Film film = render_general(glass_furnace(), {{"lighting", "mis"}, {"rr", "off"}, {"max-depth", "2000"}}, 64, seed, sources);
+    const Film film =
+        render_general(glass_furnace(), {{"lighting", "mis"}, {"rr", "off"}, {"max-depth", "2000"}}, 64, seed, sources);
     Findings findings{mean_is("radiance in glass", film, 2.25), exact("no invalid samples", film.invalid == 0)};
     const stats::Sample sample = sample_of(film);
     const Film whitted = render_general(glass_furnace(), {{"integrator", "whitted"}}, 256, seed + 1, sources);
     findings.push_back(mean_is("radiance in glass, whitted", whitted, 2.25));
-    findings.push_back(exact("without noise, variance " + std::to_string(sample.variance), sample.variance < 1e-5)); // squares are rounded to float
+    findings.push_back(exact("without noise, variance " + std::to_string(sample.variance),
+                             sample.variance < 1e-5)); // squares are rounded to float
     return findings;
 }
 
 Findings check_triangle_light(const Sources &sources, unsigned seed) {
     Findings findings;
-    for (const Overrides &how : {Overrides{{"lighting", "bsdf"}}, Overrides{{"lighting", "emitter"}}, Overrides{{"lighting", "mis"}, {"mis", "balance"}},
-                                 Overrides{{"lighting", "mis"}, {"mis", "power"}}, Overrides{{"lighting", "bsdf"}, {"hemisphere", "uniform"}},
-                                 Overrides{{"lighting", "emitter"}, {"sampler", "sobol"}},
-                                 Overrides{{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "one-sample"}},
-                                 Overrides{{"integrator", "whitted"}}}) {
+    for (const Overrides &how :
+         {Overrides{{"lighting", "bsdf"}}, Overrides{{"lighting", "emitter"}},
+          Overrides{{"lighting", "mis"}, {"mis", "balance"}}, Overrides{{"lighting", "mis"}, {"mis", "power"}},
+          Overrides{{"lighting", "bsdf"}, {"hemisphere", "uniform"}},
+          Overrides{{"lighting", "emitter"}, {"sampler", "sobol"}},
+          Overrides{{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "one-sample"}},
+          Overrides{{"integrator", "whitted"}}}) {
         const Film film = render_general(triangle_light(), how, 4096, seed + unsigned(findings.size()), sources);
         findings.push_back(mean_is("triangle light, " + text_of(how), film, triangle_light_truth(), 0));
     }
     for (const char *lighting : {"bsdf", "emitter", "mis"}) {
         const Film film = render_general(averted_light(), {{"lighting", lighting}}, 64, seed, sources);
-        findings.push_back(exact("a light that faces away sheds none, " + std::string(lighting), sample_of(film).mean == 0));
+        findings.push_back(
+            exact("a light that faces away sheds none, " + std::string(lighting), sample_of(film).mean == 0));
     }
     return findings;
 }
 
 Findings check_point_light(const Sources &sources, unsigned seed) {
     Findings findings;
-    for (const Overrides &how : {Overrides{{"lighting", "emitter"}}, Overrides{{"lighting", "mis"}}, Overrides{{"integrator", "whitted"}},
-                                 Overrides{{"integrator", "direct_lighting"}, {"lighting", "emitter"}}}) {
+    for (const Overrides &how :
+         {Overrides{{"lighting", "emitter"}}, Overrides{{"lighting", "mis"}}, Overrides{{"integrator", "whitted"}},
+          Overrides{{"integrator", "direct_lighting"}, {"lighting", "emitter"}}}) {
         const Film film = render_general(point_light(), how, 4, seed, sources);
         findings.push_back(mean_is("point light, " + text_of(how), film, point_light_truth(), 0));
     }
@@ -118,7 +128,8 @@ Findings check_smooth_normals(const Sources &sources, unsigned seed) {
     const Film film = render_general(smooth_octahedron(), {}, 4, seed, sources);
     Findings findings;
     for (int channel = 0; channel < 3; channel++)
-        findings.push_back(mean_is("smooth normal's component " + std::to_string(channel), film, std::abs(smooth_normal()[channel]), channel));
+        findings.push_back(mean_is("smooth normal's component " + std::to_string(channel), film,
+                                   std::abs(smooth_normal()[channel]), channel));
     return findings;
 }
 

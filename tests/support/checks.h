@@ -1,5 +1,5 @@
-// Checks of rendering that a test runs on the kernels as they are, and a negative control on mutants of them (support/mutants.h):
-// what passes for the one must fail for the other.
+// Checks of rendering that a test runs on the kernels as they are, and a negative control on mutants of them
+// (support/mutants.h): what passes for the one must fail for the other.
 #pragma once
 
 #include "device/program.h"
@@ -36,8 +36,9 @@ Findings check_smooth_normals(const Sources &sources, unsigned seed);
 // Discrete choices, drawn with the probability that their weights state: to 1e-6, without statistics.
 Findings check_counted(const Sources &sources, unsigned seed);
 
-// Estimators with one expectation, each held against the others: path tracing in a room of all materials; direct light in a matte
-// one, where direct_lighting, whitted and paths of two segments mean the same; ambient occlusion; Russian roulette.
+// Estimators with one expectation, each held against the others: path tracing in a room of all materials; direct light
+// in a matte one, where direct_lighting, whitted and paths of two segments mean the same; ambient occlusion; Russian
+// roulette.
 Findings check_agreement(const Sources &sources, unsigned seed);
 
 // The pixel filters: a constant picture, the sum of the weights, an edge whose blur is known.

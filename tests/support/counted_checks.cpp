@@ -1,11 +1,12 @@
-// Probabilities, counted. 2^24 Sobol samples of one pixel give every number k 2^-24 once in each dimension: what is drawn with a stated
-// probability then comes exactly that often, and a picture without other variance is exact. No statistics, no seed: limits are roundings.
+// Probabilities, counted. 2^24 Sobol samples of one pixel give every number k 2^-24 once in each dimension: what is
+// drawn with a stated probability then comes exactly that often, and a picture without other variance is exact. No
+// statistics, no seed: limits are roundings.
+#include "probe/kernel_probe.h"
 #include "support/checks.h"
+#include "support/device.h"
 #include "support/kernel_checks.h"
 #include "support/pictures.h"
 #include "support/rooms.h"
-#include "trust/kernel_probe.h"
-#include "support/device.h"
 
 #include <fmt/format.h>
 
@@ -19,16 +20,19 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double counted_limit = 1e-6; // relative
 
-Finding counted(const std::string &what, SceneDescription scene, const Overrides &how, double truth, const Sources &sources) {
+Finding counted(const std::string &what, SceneDescription scene, const Overrides &how, double truth,
+                const Sources &sources) {
     scene.camera.width = scene.camera.height = 1;
     scene.strategy[AXIS_sampler] = CHOICE_sampler_sobol;
     Shot shot;
     shot.sources = &sources;
     const double got = sample_of(render(with(std::move(scene), how), 1u << 24, 0, shot), 0).mean;
-    return exact(fmt::format("{}: {:.9g}, not {:.9g}, off by {:.2g}", what, got, truth, got / truth - 1), std::abs(got / truth - 1) <= counted_limit);
+    return exact(fmt::format("{}: {:.9g}, not {:.9g}, off by {:.2g}", what, got, truth, got / truth - 1),
+                 std::abs(got / truth - 1) <= counted_limit);
 }
 
-// A patch of that albedo in a black room that emits 1: each path that survives the patch carries albedo / survival home.
+// A patch of that albedo in a black room that emits 1: each path that survives the patch carries albedo / survival
+// home.
 SceneDescription dark_patch(double albedo) {
     SceneDescription scene = furnace(0, 1);
     scene.meshes.push_back(diffuse(Parallelogram{{-0.1, -0.5, -0.1}, {0, 0, 0.2}, {0.2, 0, 0}}, float(albedo), true));
@@ -90,21 +94,25 @@ Findings check_counted(const Sources &sources, unsigned) {
     fixed.strategy.rr_prob = 1e-5;
     findings.push_back(counted("fixed roulette, 1e-5", fixed, {{"lighting", "bsdf"}, {"rr", "fixed"}}, 0.5, sources));
 
-    const Overrides by_light = {{"lighting", "emitter"}}, by_power = {{"lighting", "emitter"}, {"emitter-choice", "power"}};
+    const Overrides by_light = {{"lighting", "emitter"}},
+                    by_power = {{"lighting", "emitter"}, {"emitter-choice", "power"}};
     findings.push_back(counted("one lamp of three", lamps({50, 50}), by_light, lamp, sources));
     findings.push_back(counted("one lamp of 1000", lamps(std::vector<double>(999, 50)), by_light, lamp, sources));
-    // Row and accept are two numbers: their pairs come exactly as often as they should where both shares are even, as here.
+    // Row and accept are two numbers: their pairs come exactly as often as they should where both shares are even, as
+    // here.
     SceneDescription dim = lamps({1e8});
     dim.point_lights[0].power = {100, 100, 100};
     findings.push_back(counted("a lamp of 1e-6 of another's power", dim, by_power, lamp, sources));
 
     for (float index : {1.001f, 1.01f, 1.33f})
-        findings.push_back(counted(fmt::format("reflection, index {}", index), reflection(index), {{"lighting", "bsdf"}, {"rr", "off"}},
-                                   fresnel_at_normal(1, double(index)), sources));
+        findings.push_back(counted(fmt::format("reflection, index {}", index), reflection(index),
+                                   {{"lighting", "bsdf"}, {"rr", "off"}}, fresnel_at_normal(1, double(index)),
+                                   sources));
 
     for (const char *choice : {"area", "uniform"})
         findings.push_back(counted(fmt::format("one triangle of 100 003 by {}", choice), one_triangle_of(100003),
-                                   {{"lighting", "emitter"}, {"triangle-choice", choice}}, one_triangle_truth(), sources));
+                                   {{"lighting", "emitter"}, {"triangle-choice", choice}}, one_triangle_truth(),
+                                   sources));
     // No choice at all: every path is the series 1 + a + a^2 + ..., in one sum.
     for (double albedo : {0.9, 0.99, 0.999}) {
         SceneDescription scene = furnace(albedo, 1);
@@ -114,8 +122,9 @@ Findings check_counted(const Sources &sources, unsigned) {
         scene.camera.width = scene.camera.height = 2;
         const double truth = 1 / (1 - double(float(albedo)));
         const double got = sample_of(render(with(scene, {{"lighting", "bsdf"}, {"rr", "off"}}), 4, 0, shot), 0).mean;
-        findings.push_back(exact(fmt::format("furnace of albedo {}: {:.9g}, not {:.9g}, off by {:.2g}", albedo, got, truth, got / truth - 1),
-                                 std::abs(got / truth - 1) <= counted_limit));
+        findings.push_back(exact(
+            fmt::format("furnace of albedo {}: {:.9g}, not {:.9g}, off by {:.2g}", albedo, got, truth, got / truth - 1),
+            std::abs(got / truth - 1) <= counted_limit));
     }
     return findings;
 }
@@ -123,7 +132,8 @@ Findings check_counted(const Sources &sources, unsigned) {
 Findings check_choices(const Sources &sources, unsigned) {
     Findings findings;
     const Vec3 wi = normalize({0.8, 0, 0.6}), mirrored{-wi.x, -wi.y, wi.z};
-    // `stated`: the probability by the density. Of the numbers of the lobe around it, those below and no others choose what comes first.
+    // `stated`: the probability by the density. Of the numbers of the lobe around it, those below and no others choose
+    // what comes first.
     const auto judge = [&](const std::string &what, KernelProbe &probe, double stated, double wished) {
         const double k = std::round(std::ldexp(stated, 24));
         Planes numbers(3, 8);
@@ -135,37 +145,47 @@ Findings check_choices(const Sources &sources, unsigned) {
         numbers.at(2, 6) = 0;
         numbers.at(2, 7) = 0x1.fffffep-1f;
         const Planes drawn = probe.bsdf_sample(0, wi, numbers);
-        const auto same = [&](size_t a, size_t b) { return length(drawn.vec3(BSDF_WO_X, a) - drawn.vec3(BSDF_WO_X, b)) < 1e-6; };
+        const auto same = [&](size_t a, size_t b) {
+            return length(drawn.vec3(BSDF_WO_X, a) - drawn.vec3(BSDF_WO_X, b)) < 1e-6;
+        };
         size_t wrong = same(6, 7);
         for (size_t i = 0; i < 6; i++)
             wrong += !same(i, double(numbers.at(2, i)) * 0x1p24 < k ? 6 : 7);
-        findings.push_back(exact(fmt::format("{}: drawn as {:.9g} says, for {:.9g}: {} of 7 numbers wrong", what, stated, wished, wrong),
-                                 wrong == 0 && std::abs(stated / (k * 0x1p-24) - 1) < 1e-6 && stated >= wished * (1 - 1e-6) && stated <= wished + 0x1p-24));
+        findings.push_back(exact(
+            fmt::format("{}: drawn as {:.9g} says, for {:.9g}: {} of 7 numbers wrong", what, stated, wished, wrong),
+            wrong == 0 && std::abs(stated / (k * 0x1p-24) - 1) < 1e-6 && stated >= wished * (1 - 1e-6) &&
+                stated <= wished + 0x1p-24));
     };
     for (int lanes : tested_lanes()) {
         BuildOptions build;
         build.lanes = lanes;
-        const auto probe_of = [&](const BsdfRecord &record) { return KernelProbe(device(), scene_of_bsdfs({record}), build, sources); };
-        const auto density = [&](KernelProbe &probe, Vec3 wo) { return double(probe.bsdf_eval(0, wi, std::vector{wo}).at(EVAL_PDF, 0)); };
+        const auto probe_of = [&](const BsdfRecord &record) {
+            return KernelProbe(device(), scene_of_bsdfs({record}), build, sources);
+        };
+        const auto density = [&](KernelProbe &probe, Vec3 wo) {
+            return double(probe.bsdf_eval(0, wi, std::vector{wo}).at(EVAL_PDF, 0));
+        };
         const auto coated = [](float ks) {
             BsdfRecord record = bsdf_record(BSDF_microfacet, 1 - ks);
             record.u.microfacet.alpha = 0.001f;
             record.u.microfacet.ks = ks;
             return record;
         };
-        KernelProbe half = probe_of(coated(0.5f)); // drawn as wished: it tells the density of the coat alone, beside the base's
+        KernelProbe half =
+            probe_of(coated(0.5f)); // drawn as wished: it tells the density of the coat alone, beside the base's
         const double base = wi.z / pi, coat = 2 * density(half, mirrored) - base;
         for (float share : {1e-6f, 3e-4f, 0.3f}) {
             BsdfRecord phong = bsdf_record(BSDF_phong);
             phong.u.phong.pd = share;
             phong.u.phong.n = 1e4f; // nothing of the lobe goes back to the viewer
             KernelProbe probe = probe_of(phong);
-            judge(fmt::format("Phong's diffuse part at {} lanes", lanes), probe, density(probe, wi) * pi / wi.z, double(share));
+            judge(fmt::format("Phong's diffuse part at {} lanes", lanes), probe, density(probe, wi) * pi / wi.z,
+                  double(share));
             if (share > 0.1f)
                 continue; // densities are floats: more numbers than they tell apart
             KernelProbe coated_probe = probe_of(coated(share));
-            judge(fmt::format("the microfacets' coat at {} lanes", lanes), coated_probe, (density(coated_probe, mirrored) - base) / (coat - base),
-                  double(share));
+            judge(fmt::format("the microfacets' coat at {} lanes", lanes), coated_probe,
+                  (density(coated_probe, mirrored) - base) / (coat - base), double(share));
         }
     }
     return findings;

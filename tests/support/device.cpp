@@ -1,6 +1,6 @@
 #include "support/device.h"
 
-#include "device/probe.h"
+#include "device/ask_driver.h"
 #include "support/scratch.h"
 
 #include <fmt/format.h>

@@ -48,7 +48,10 @@ void run(const cl::Program &program, const std::string &name, size_t work_items,
         const auto set = [&](const auto &argument) {
             if constexpr (requires { argument.buffer; })
                 kernel.setArg(place++, argument.buffer);
-            else if constexpr (requires { argument.data(); argument.size(); })
+            else if constexpr (requires {
+                                   argument.data();
+                                   argument.size();
+                               })
                 kernel.setArg(place++, inputs.emplace_back(make_table(device(), argument, "a test's input")));
             else
                 kernel.setArg(place++, argument);

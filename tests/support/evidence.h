@@ -1,7 +1,7 @@
 // Whole images judged by statistics; what disagrees is left on the disk.
 #pragma once
 
-#include "commands/evidence.h"
+#include "compare/evidence.h"
 
 namespace opal::test {
 

@@ -16,14 +16,16 @@ namespace {
 constexpr unsigned planes = 22, pixels = 3; // as in cl/film.cl
 constexpr unsigned samples = 1u << 18;
 
-// Slots of `samples` samples a pixel: pixel 0 one value throughout, which a plain sum of floats rounds away from some size
-// on; pixel 1 of very different sizes; pixel 2 with NaN and infinity among them.
+// Slots of `samples` samples a pixel: pixel 0 one value throughout, which a plain sum of floats rounds away from some
+// size on; pixel 1 of very different sizes; pixel 2 with NaN and infinity among them.
 std::vector<float> slots_of(unsigned seed) {
     std::mt19937 random(seed);
     std::vector<float> slots(size_t(3) * pixels * samples);
     for (size_t i = 0; i < slots.size(); i++) {
         const size_t pixel = i / (3 * samples);
-        slots[i] = pixel == 0 ? 0.1f : pixel == 1 ? std::ldexp(float(random() >> 8), int(random() % 40) - 44) : float(random() >> 8) * 0x1p-24f;
+        slots[i] = pixel == 0   ? 0.1f
+                   : pixel == 1 ? std::ldexp(float(random() >> 8), int(random() % 40) - 44)
+                                : float(random() >> 8) * 0x1p-24f;
     }
     float *last = slots.data() + size_t(3) * 2 * samples;
     last[3 * 5] = NAN;
@@ -45,7 +47,8 @@ Findings check_film(const Sources &sources, unsigned seed) {
     for (int lanes : tested_lanes()) {
         BuildOptions build;
         build.lanes = lanes;
-        const cl::Program program = build_program(device(), program_text(all_features({{"wide_filter", false}}), build, sources), build);
+        const cl::Program program =
+            build_program(device(), program_text(all_features({{"wide_filter", false}}), build, sources), build);
         const Output<float> film(planes * pixels);
         const Output<cl_uint> counts(pixels), invalid(17);
         // In two passes, so that the sums of one go on in the next.
@@ -53,11 +56,15 @@ Findings check_film(const Sources &sources, unsigned seed) {
         for (const auto &[from, count] : {std::pair{0u, first}, std::pair{first, samples - first}}) {
             std::vector<float> pass;
             for (unsigned p = 0; p < pixels; p++)
-                pass.insert(pass.end(), slots.begin() + 3 * (ptrdiff_t(p) * samples + from), slots.begin() + 3 * (ptrdiff_t(p) * samples + from + count));
-            run(program, "gather", (pixels + size_t(lanes) - 1) / size_t(lanes), std::vector<Settings>{settings}, pass, film, counts, invalid, cl_uint(from), cl_uint(count));
+                pass.insert(pass.end(), slots.begin() + 3 * (ptrdiff_t(p) * samples + from),
+                            slots.begin() + 3 * (ptrdiff_t(p) * samples + from + count));
+            run(program, "gather", (pixels + size_t(lanes) - 1) / size_t(lanes), std::vector<Settings>{settings}, pass,
+                film, counts, invalid, cl_uint(from), cl_uint(count));
         }
         const std::vector<float> sums = film.read();
-        const auto value = [&](unsigned plane, unsigned low, unsigned p) { return double(sums[plane * pixels + p]) + double(sums[(plane + low) * pixels + p]); };
+        const auto value = [&](unsigned plane, unsigned low, unsigned p) {
+            return double(sums[plane * pixels + p]) + double(sums[(plane + low) * pixels + p]);
+        };
         for (unsigned p = 0; p < pixels; p++)
             for (unsigned c = 0; c < 3; c++) {
                 stats::CompensatedSum sum, squares;
@@ -72,10 +79,12 @@ Findings check_film(const Sources &sources, unsigned seed) {
                 findings.push_back(exact(where + "sum", close(value(0 + c, 3, p), sum.value())));
                 findings.push_back(exact(where + "squares", close(value(6 + c, 4, p), squares.value())));
             }
-        findings.push_back(exact("samples counted", counts.read() == std::vector<cl_uint>{samples, samples, samples - 3}));
+        findings.push_back(
+            exact("samples counted", counts.read() == std::vector<cl_uint>{samples, samples, samples - 3}));
         const std::vector<cl_uint> found = invalid.read();
-        findings.push_back(exact("invalid samples counted and placed",
-                                 std::vector<cl_uint>(found.begin(), found.begin() + 7) == std::vector<cl_uint>{3, 2, 5, 2, 70, 2, 71}));
+        findings.push_back(
+            exact("invalid samples counted and placed", std::vector<cl_uint>(found.begin(), found.begin() + 7) ==
+                                                            std::vector<cl_uint>{3, 2, 5, 2, 70, 2, 71}));
     }
     return findings;
 }

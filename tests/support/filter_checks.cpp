@@ -28,7 +28,8 @@ double mitchell(double x) { // Mitchell and Netravali 1988, B = C = 1/3, radius 
 std::vector<NamedFilter> filters() {
     return {{"box", Filter{FILTER_box, 0.5}, [](double x) { return std::abs(x) <= 0.5 ? 1.0 : 0.0; }},
             {"tent", Filter{FILTER_tent, 1}, [](double x) { return std::max(0.0, 1 - std::abs(x)); }},
-            {"gaussian", Filter{FILTER_gaussian, 2, 0.5}, [](double x) { return std::abs(x) < 2 ? std::exp(-2 * x * x) - std::exp(-8.0) : 0.0; }},
+            {"gaussian", Filter{FILTER_gaussian, 2, 0.5},
+             [](double x) { return std::abs(x) < 2 ? std::exp(-2 * x * x) - std::exp(-8.0) : 0.0; }},
             {"mitchell", Filter{FILTER_mitchell, 2}, mitchell}};
 }
 
@@ -44,7 +45,8 @@ constexpr int width = 16, height = 404, middle = width / 2;
 
 // A wall that emits 1, seen head-on; its edge runs down the image at column `edge`, bright on the left.
 SceneDescription half_lit(double edge) {
-    // Film x = (1 - 2 sx) tan(fov / 2) at distance 1, +x left: with a half angle of 45 degrees and depth 1 from 1 to -1.
+    // Film x = (1 - 2 sx) tan(fov / 2) at distance 1, +x left: with a half angle of 45 degrees and depth 1 from 1 to
+    // -1.
     const double x = 1 - 2 * edge / width;
     SceneDescription scene = scene_of({light(Parallelogram{{x, -90, 1}, {0, 180, 0}, {50, 0, 0}}, {1, 1, 1})});
     scene.meshes[0].bsdf.record = bsdf_record(BSDF_diffuse, 0);
@@ -60,7 +62,8 @@ Film filtered(SceneDescription scene, const Filter &filter, unsigned spp, unsign
     scene.spp = spp;
     Shot shot;
     shot.sources = &sources;
-    return render(with(std::move(scene), {{"lighting", "bsdf"}, {"rr", "off"}, {"sampler", "stratified"}}), spp, seed, shot);
+    return render(with(std::move(scene), {{"lighting", "bsdf"}, {"rr", "off"}, {"sampler", "stratified"}}), spp, seed,
+                  shot);
 }
 
 double value(const Film &film, int x, int y) {
@@ -93,15 +96,22 @@ Findings check_filters(const Sources &sources, unsigned seed) {
         const Film film = filtered(half_lit(edge), f.filter, spp, seed + 1, sources);
         const double whole = integral(f.weight, -2, 2);
         if (!film.weighted.empty()) // per sample of a pixel, those of all pixels around together
-            findings.push_back({f.name + ": the weights' sum", stats::t_test(over_rows(film, [&](int y) {
-                                                                   double sum = 0;
-                                                                   for (int x = 2; x + 2 < width; x += 4)
-                                                                       sum += film.weighted[size_t(y) * width + size_t(x)][3] / spp / 3;
-                                                                   return sum;
-                                                               }), whole * whole).p_value});
+            findings.push_back({f.name + ": the weights' sum",
+                                stats::t_test(over_rows(film,
+                                                        [&](int y) {
+                                                            double sum = 0;
+                                                            for (int x = 2; x + 2 < width; x += 4)
+                                                                sum += film.weighted[size_t(y) * width + size_t(x)][3] /
+                                                                       spp / 3;
+                                                            return sum;
+                                                        }),
+                                              whole * whole)
+                                    .p_value});
         for (int x = middle - 3; x <= middle + 3; x++) {
             const double lit_share = integral(f.weight, -2, std::clamp(edge - (x + 0.5), -2.0, 2.0)) / whole;
-            findings.push_back({f.name + ": edge at column " + std::to_string(x), stats::t_test(over_rows(film, [&](int y) { return value(film, x, y); }), lit_share).p_value});
+            findings.push_back(
+                {f.name + ": edge at column " + std::to_string(x),
+                 stats::t_test(over_rows(film, [&](int y) { return value(film, x, y); }), lit_share).p_value});
         }
     }
     return findings;

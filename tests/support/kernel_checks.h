@@ -1,26 +1,27 @@
-// Checks of the functions that rendering uses, run one by one on the device (host/trust/kernel_probe.h), at 1 lane and at the
-// device's width. As in support/checks.h: a right kernel passes, its mutants must not.
+// Checks of the functions that rendering uses, run one by one on the device (host/probe/kernel_probe.h), at 1 lane and
+// at the device's width. As in support/checks.h: a right kernel passes, its mutants must not.
 #pragma once
 
 #include "support/checks.h"
 
 namespace opal::test {
 
-Findings check_known_numbers(const Sources &sources, unsigned seed);  // bit for bit, never 1
-Findings check_sobol(const Sources &sources, unsigned seed);          // elementary intervals
-Findings check_stratified(const Sources &sources, unsigned seed);     // strata, permutations
-Findings check_independence(const Sources &sources, unsigned seed);   // uniform; pixels, samples, dimensions, seeds uncorrelated
+Findings check_known_numbers(const Sources &sources, unsigned seed); // bit for bit, never 1
+Findings check_sobol(const Sources &sources, unsigned seed);         // elementary intervals
+Findings check_stratified(const Sources &sources, unsigned seed);    // strata, permutations
+Findings check_independence(const Sources &sources,
+                            unsigned seed); // uniform; pixels, samples, dimensions, seeds uncorrelated
 
-Findings check_tree(const Sources &sources, unsigned seed);           // closest and any hit against brute force in double
-Findings check_tiny(const Sources &sources, unsigned seed);           // the same without a tree
-Findings check_watertight(const Sources &sources, unsigned seed);     // rays at edges and vertices of closed meshes
+Findings check_tree(const Sources &sources, unsigned seed);       // closest and any hit against brute force in double
+Findings check_tiny(const Sources &sources, unsigned seed);       // the same without a tree
+Findings check_watertight(const Sources &sources, unsigned seed); // rays at edges and vertices of closed meshes
 
-Findings check_warps(const Sources &sources, unsigned seed);          // chi-square against the density
-Findings check_bsdfs(const Sources &sources, unsigned seed);          // the same, and weight = f cos / pdf, and reciprocity
-Findings check_albedos(const Sources &sources, unsigned seed);        // microfacet against quadrature; none above 1
-Findings check_refraction(const Sources &sources, unsigned seed);     // Snell's law and Fresnel's formulas in double
-Findings check_choices(const Sources &sources, unsigned seed);        // shares of BSDFs' parts, number by number
-Findings check_emitters(const Sources &sources, unsigned seed);       // points against their density, all ways to choose
-Findings check_trigonometry(const Sources &sources, unsigned seed);   // cos_sin_2pi against double
+Findings check_warps(const Sources &sources, unsigned seed);      // chi-square against the density
+Findings check_bsdfs(const Sources &sources, unsigned seed);      // the same, and weight = f cos / pdf, and reciprocity
+Findings check_albedos(const Sources &sources, unsigned seed);    // microfacet against quadrature; none above 1
+Findings check_refraction(const Sources &sources, unsigned seed); // Snell's law and Fresnel's formulas in double
+Findings check_choices(const Sources &sources, unsigned seed);    // shares of BSDFs' parts, number by number
+Findings check_emitters(const Sources &sources, unsigned seed);   // points against their density, all ways to choose
+Findings check_trigonometry(const Sources &sources, unsigned seed); // cos_sin_2pi against double
 
 } // namespace opal::test

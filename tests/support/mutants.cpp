@@ -18,7 +18,8 @@ Sources mutated(const Sources &sources, const Mutant &mutant) {
     if (place == std::string::npos)
         throw Error(fmt::format("mutant \"{}\": cl/{} has no text \"{}\"", mutant.name, mutant.file, mutant.from));
     if (text.find(mutant.from, place + 1) != std::string::npos)
-        throw Error(fmt::format("mutant \"{}\": cl/{} has the text \"{}\" more than once", mutant.name, mutant.file, mutant.from));
+        throw Error(fmt::format("mutant \"{}\": cl/{} has the text \"{}\" more than once", mutant.name, mutant.file,
+                                mutant.from));
     text.replace(place, mutant.from.size(), mutant.to);
     return changed;
 }
@@ -27,7 +28,8 @@ void require_all_killed(const std::vector<Control> &controls, unsigned seed) {
     size_t killed = 0, run = 0;
     for (const Control &control : controls) {
         if (control.mutant.many_lanes && tested_lanes() == std::vector<int>{1}) {
-            fmt::print("left out, as this device carries one lane: {} (cl/{})\n", control.mutant.name, control.mutant.file);
+            fmt::print("left out, as this device carries one lane: {} (cl/{})\n", control.mutant.name,
+                       control.mutant.file);
             continue;
         }
         run++;
@@ -36,8 +38,8 @@ void require_all_killed(const std::vector<Control> &controls, unsigned seed) {
         const bool dead = rejected(findings);
         killed += dead;
         const Finding &by = worst(findings);
-        fmt::print("{} by {:<14} {} (cl/{}): {}, p = {:.2g}\n", dead ? "killed  " : "SURVIVED", control.check_name, control.mutant.name,
-                   control.mutant.file, by.what, by.p);
+        fmt::print("{} by {:<14} {} (cl/{}): {}, p = {:.2g}\n", dead ? "killed  " : "SURVIVED", control.check_name,
+                   control.mutant.name, control.mutant.file, by.what, by.p);
         std::fflush(stdout);
         CHECK(dead);
     }

@@ -6,10 +6,11 @@
 namespace opal::test {
 
 struct Mutant {
-    std::string name;              // what is wrong with it
-    std::string file;              // below cl/
-    std::string from, to;          // `from` must be in the file exactly once
-    bool many_lanes = false;       // only programs of more than one lane run it: left out where the device is tested at one lane alone
+    std::string name;     // what is wrong with it
+    std::string file;     // below cl/
+    std::string from, to; // `from` must be in the file exactly once
+    bool many_lanes =
+        false; // only programs of more than one lane run it: left out where the device is tested at one lane alone
 };
 
 // The sources with that one change. Throws Error where the text is not there, or more than once.

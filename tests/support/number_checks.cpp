@@ -1,8 +1,8 @@
 // The random numbers.
+#include "probe/kernel_probe.h"
 #include "stats/hypothesis.h"
 #include "support/device.h"
 #include "support/kernel_checks.h"
-#include "trust/kernel_probe.h"
 
 #include <fmt/format.h>
 
@@ -23,12 +23,12 @@ KernelProbe probe_at(int lanes, const Sources &sources) {
 unsigned bits24(float u) { return unsigned(std::ldexp(double(u), 24)); } // exact: every number is k 2^-24
 
 struct Known {
-    unsigned index;                // sample 3 index of pixel 7 index, seed 42
-    unsigned pairs[3][2];          // of dimensions 4, 5, 6, times 2^24
+    unsigned index;       // sample 3 index of pixel 7 index, seed 42
+    unsigned pairs[3][2]; // of dimensions 4, 5, 6, times 2^24
 };
 
-// Computed apart from Opal, in whole numbers, from the papers' definitions (pcg3d, pcg4d, Sobol's second dimension by its direction
-// numbers, Laine-Karras with Vegdahl's constants).
+// Computed apart from Opal, in whole numbers, from the papers' definitions (pcg3d, pcg4d, Sobol's second dimension by
+// its direction numbers, Laine-Karras with Vegdahl's constants).
 constexpr Known independent_numbers[] = {{0, {{6313979, 10456319}, {4572304, 13315532}, {11795585, 12854500}}},
                                          {1, {{1980249, 9935642}, {13202335, 2018448}, {7277339, 6906205}}},
                                          {1000, {{5793495, 7366603}, {16207522, 12532365}, {3660511, 12038522}}}};
@@ -52,16 +52,19 @@ bool below_one(const Planes &numbers) {
     return true;
 }
 
-Finding uncorrelated(const std::string &what, const Planes &a, size_t plane_a, const Planes &b, size_t plane_b, size_t shift = 0) {
+Finding uncorrelated(const std::string &what, const Planes &a, size_t plane_a, const Planes &b, size_t plane_b,
+                     size_t shift = 0) {
     double sum = 0;
     const size_t n = a.count - shift;
     for (size_t i = 0; i < n; i++)
         sum += (double(a.at(plane_a, i)) - 0.5) * (double(b.at(plane_b, i + shift)) - 0.5);
-    return {what, stats::two_sided_p(sum / double(n) * 12 * std::sqrt(double(n)), INFINITY)}; // variance of a product: 1/144
+    return {what,
+            stats::two_sided_p(sum / double(n) * 12 * std::sqrt(double(n)), INFINITY)}; // variance of a product: 1/144
 }
 
 // 16 x 16 cells of pairs.
-Finding uniform_pairs(const std::string &what, const Planes &a, size_t plane_a, const Planes &b, size_t plane_b, size_t shift = 0) {
+Finding uniform_pairs(const std::string &what, const Planes &a, size_t plane_a, const Planes &b, size_t plane_b,
+                      size_t shift = 0) {
     std::vector<double> observed(256);
     const size_t n = a.count - shift;
     for (size_t i = 0; i < n; i++)
@@ -83,11 +86,13 @@ Findings check_known_numbers(const Sources &sources, unsigned) {
         const std::string where = " at " + std::to_string(lanes) + " lanes";
         const Planes independent = probe.numbers(1001, options);
         for (const Known &known : independent_numbers)
-            findings.push_back(exact("independent numbers of index " + std::to_string(known.index) + where, has(independent, known)));
+            findings.push_back(
+                exact("independent numbers of index " + std::to_string(known.index) + where, has(independent, known)));
         options.sampler = CHOICE_sampler_sobol;
         const Planes sobol = probe.numbers(1001, options);
         for (const Known &known : sobol_numbers)
-            findings.push_back(exact("Sobol numbers of index " + std::to_string(known.index) + where, has(sobol, known)));
+            findings.push_back(
+                exact("Sobol numbers of index " + std::to_string(known.index) + where, has(sobol, known)));
         // Every sampler, many strata of awkward number: the largest float below 1 is the most there is.
         for (int sampler : {CHOICE_sampler_independent, CHOICE_sampler_stratified, CHOICE_sampler_sobol})
             for (unsigned spp : {1u, 7u, 1000u, 65521u}) {
@@ -97,8 +102,9 @@ Findings check_known_numbers(const Sources &sources, unsigned) {
             }
     }
     Sources with_kernel = sources;
-    with_kernel.files["tests/inline.cl"] = "#include \"lanes.cl\"\n#include \"math.cl\"\n#include \"rng.cl\"\n"
-                                           "kernel void largest(global float *out) { out[0] = unit_real(0xffffffffu); out[1] = unit_real(0u); }\n";
+    with_kernel.files["tests/inline.cl"] =
+        "#include \"lanes.cl\"\n#include \"math.cl\"\n#include \"rng.cl\"\n"
+        "kernel void largest(global float *out) { out[0] = unit_real(0xffffffffu); out[1] = unit_real(0u); }\n";
     BuildOptions build;
     build.kernels = "tests/inline.cl";
     const cl::Program program = build_program(device(), program_text(all_features(), build, with_kernel), build);
@@ -119,16 +125,20 @@ Findings check_sobol(const Sources &sources, unsigned seed) {
             options.seed = seed + pixel;
             const Planes numbers = probe.numbers(1024, options);
             for (size_t pair = 0; pair < OPAL_PROBE_PAIRS; pair++)
-                for (int power : {4, 8, 10}) // the first 2^power points and each later block of as many are (0, power, 2)-nets
+                for (int power :
+                     {4, 8, 10}) // the first 2^power points and each later block of as many are (0, power, 2)-nets
                     for (int a = 0; a <= power; a++) {
                         bool net = true;
                         for (size_t block = 0; block < 1024u >> power && net; block++) {
                             std::set<unsigned> cells;
                             for (size_t i = block << power; i < (block + 1) << power; i++)
-                                cells.insert(bits24(numbers.at(2 * pair, i)) >> (24 - a) << (power - a) | bits24(numbers.at(2 * pair + 1, i)) >> (24 - power + a));
+                                cells.insert(bits24(numbers.at(2 * pair, i)) >> (24 - a) << (power - a) |
+                                             bits24(numbers.at(2 * pair + 1, i)) >> (24 - power + a));
                             net = cells.size() == 1u << power;
                         }
-                        findings.push_back(exact("a point in each interval of 2^-" + std::to_string(a) + " x 2^-" + std::to_string(power - a), net));
+                        findings.push_back(exact("a point in each interval of 2^-" + std::to_string(a) + " x 2^-" +
+                                                     std::to_string(power - a),
+                                                 net));
                     }
         }
     }
@@ -137,7 +147,9 @@ Findings check_sobol(const Sources &sources, unsigned seed) {
 
 Findings check_stratified(const Sources &sources, unsigned seed) {
     Findings findings;
-    struct Strata { unsigned spp, columns, rows; };
+    struct Strata {
+        unsigned spp, columns, rows;
+    };
     for (int lanes : tested_lanes()) {
         KernelProbe probe = probe_at(lanes, sources);
         for (const auto &[spp, columns, rows] : {Strata{16, 4, 4}, {12, 3, 4}, {7, 2, 4}, {256, 16, 16}, {1, 1, 1}}) {
@@ -151,18 +163,22 @@ Findings check_stratified(const Sources &sources, unsigned seed) {
                 for (unsigned round = 0; round < 2; round++) {
                     std::vector<unsigned> order;
                     for (size_t i = round * columns * rows; i < (round + 1) * columns * rows; i++)
-                        order.push_back(unsigned(double(numbers.at(2 * pair, i)) * columns) * rows + unsigned(double(numbers.at(2 * pair + 1, i)) * rows));
-                    findings.push_back(exact("each of " + std::to_string(columns * rows) + " strata once", std::set<unsigned>(order.begin(), order.end()).size() == order.size()));
+                        order.push_back(unsigned(double(numbers.at(2 * pair, i)) * columns) * rows +
+                                        unsigned(double(numbers.at(2 * pair + 1, i)) * rows));
+                    findings.push_back(exact("each of " + std::to_string(columns * rows) + " strata once",
+                                             std::set<unsigned>(order.begin(), order.end()).size() == order.size()));
                     orders.insert(order);
                 }
             if (spp >= 12)
                 findings.push_back(exact("each dimension and round in an order of its own", orders.size() == 6));
         }
     }
-    // Where there are more strata than samples, all are left out alike: the samples past spp of a round fall into those.
+    // Where there are more strata than samples, all are left out alike: the samples past spp of a round fall into
+    // those.
     KernelProbe probe = probe_at(tested_lanes().back(), sources);
     for (unsigned spp : {11u, 17u, 18u, 19u, 21u, 22u, 23u, 37u, 43u}) {
-        const unsigned columns = unsigned(std::sqrt(double(spp))), rows = (spp + columns - 1) / columns, cells = columns * rows;
+        const unsigned columns = unsigned(std::sqrt(double(spp))), rows = (spp + columns - 1) / columns,
+                       cells = columns * rows;
         NumberOptions options;
         options.sampler = CHOICE_sampler_stratified;
         options.spp = spp;
@@ -173,15 +189,18 @@ Findings check_stratified(const Sources &sources, unsigned seed) {
             for (size_t i = 0; i < numbers.count; i++) {
                 if (i % cells < spp)
                     continue;
-                const unsigned column = unsigned(double(numbers.at(2 * pair, i)) * columns), row = unsigned(double(numbers.at(2 * pair + 1, i)) * rows);
+                const unsigned column = unsigned(double(numbers.at(2 * pair, i)) * columns),
+                               row = unsigned(double(numbers.at(2 * pair + 1, i)) * rows);
                 left_out[row * columns + column]++;
                 by_column[column]++;
                 by_row[row]++;
             }
             for (const std::vector<double> &counts : {left_out, by_column, by_row}) {
                 const double all = std::accumulate(counts.begin(), counts.end(), 0.0);
-                findings.push_back({fmt::format("strata left out alike at {} samples", spp),
-                                    stats::chi_square_test(counts, std::vector<double>(counts.size(), all / double(counts.size()))).p_value});
+                findings.push_back(
+                    {fmt::format("strata left out alike at {} samples", spp),
+                     stats::chi_square_test(counts, std::vector<double>(counts.size(), all / double(counts.size())))
+                         .p_value});
             }
         }
     }
@@ -207,7 +226,8 @@ Findings check_independence(const Sources &sources, unsigned seed) {
         std::vector<double> values(pixels.values.begin(), pixels.values.begin() + count);
         findings.push_back({name + "uniform over pixels", stats::ks_uniform_test(values).p_value});
         for (size_t shift : {1u, 2u, 16u, 400u}) {
-            findings.push_back(uncorrelated(name + "pixels " + std::to_string(shift) + " apart", pixels, 0, pixels, 0, shift));
+            findings.push_back(
+                uncorrelated(name + "pixels " + std::to_string(shift) + " apart", pixels, 0, pixels, 0, shift));
             findings.push_back(uniform_pairs(name + "pairs of pixels", pixels, 1, pixels, 1, shift));
         }
         for (size_t plane : {1u, 2u, 3u, 5u}) {

@@ -1,6 +1,8 @@
 #include "support/pictures.h"
 
-#include "scene/load.h"
+#include "read/nori/load.h"
+#include "scene/options.h"
+#include "strategies/check.h"
 #include "support/device.h"
 
 namespace opal::test {

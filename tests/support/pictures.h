@@ -12,7 +12,7 @@ namespace opal::test {
 
 // How a picture is made; nothing of it may change what the picture means.
 struct Shot {
-    int lanes = 0;                                 // 0: the device's own
+    int lanes = 0; // 0: the device's own
     const Sources *sources = &Sources::embedded();
     unsigned max_pass_samples = 0;
     MathMode math = MathMode::precise;
@@ -26,8 +26,8 @@ SceneDescription with(SceneDescription scene, const Overrides &overrides);
 Renderer renderer_of(const SceneDescription &scene, const Shot &shot = {});
 Film render(const SceneDescription &scene, unsigned spp, unsigned seed, const Shot &shot = {});
 
-// The image's mean of a channel (0 R, 1 G, 2 B) or of the luminance (3) as a sample of `samples` observations, with the variance
-// of the image's noise: each pixel is a stratum. For z_test and welch_test.
+// The image's mean of a channel (0 R, 1 G, 2 B) or of the luminance (3) as a sample of `samples` observations, with the
+// variance of the image's noise: each pixel is a stratum. For z_test and welch_test.
 stats::Sample sample_of(const Film &film, int channel = 3);
 
 } // namespace opal::test

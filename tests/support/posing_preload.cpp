@@ -1,6 +1,7 @@
 // Preloaded into opal, this library lets a device answer some questions as another device would. $OPAL_POSE names what:
-// "gpu" (its type), "vectors-of-2" (floats), "no-fp64". So the host's code for GPUs and for poorer devices runs in tests,
-// on the CPU that is there. The file $OPAL_LAUNCHES gets a line for each launch: the kernel, its work-group's size.
+// "gpu" (its type), "vectors-of-2" (floats), "no-fp64". So the host's code for GPUs and for poorer devices runs in
+// tests, on the CPU that is there. The file $OPAL_LAUNCHES gets a line for each launch: the kernel, its work-group's
+// size.
 #include <CL/cl.h>
 
 #include <cstdio>
@@ -13,7 +14,9 @@
 namespace {
 
 // The function of this name that would be called without this library.
-template <class Function> Function *next(const char *name, Function *) { return reinterpret_cast<Function *>(dlsym(RTLD_NEXT, name)); }
+template <class Function> Function *next(const char *name, Function *) {
+    return reinterpret_cast<Function *>(dlsym(RTLD_NEXT, name));
+}
 
 bool poses_as(std::string_view what) {
     const char *const given = std::getenv("OPAL_POSE");
@@ -42,8 +45,9 @@ extern "C" cl_int clGetDeviceInfo(cl_device_id device, cl_device_info what, size
     return code;
 }
 
-extern "C" cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t *offset, const size_t *global,
-                                         const size_t *local, cl_uint waits, const cl_event *wait_list, cl_event *event) {
+extern "C" cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
+                                         const size_t *offset, const size_t *global, const size_t *local, cl_uint waits,
+                                         const cl_event *wait_list, cl_event *event) {
     static const auto real = next("clEnqueueNDRangeKernel", clEnqueueNDRangeKernel);
     static FILE *const log = std::getenv("OPAL_LAUNCHES") ? std::fopen(std::getenv("OPAL_LAUNCHES"), "a") : nullptr;
     char name[100] = "";

@@ -23,7 +23,8 @@ std::vector<Mesh> walls() {
 // A fan of three triangles under the ceiling, facing down, one of them a sliver.
 TriangleMesh fan_light() {
     const double y = 0.98;
-    return mesh_of({{-0.7, y, -0.6}, {0.6, y, -0.6}, {0.6, y, 0.5}, {0.596, y, 0.503}, {-0.7, y, 0.5}}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}});
+    return mesh_of({{-0.7, y, -0.6}, {0.6, y, -0.6}, {0.6, y, 0.5}, {0.596, y, 0.503}, {-0.7, y, 0.5}},
+                   {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}});
 }
 
 TriangleMesh octahedron(Vec3 center, double size) {
@@ -44,7 +45,8 @@ TriangleMesh octahedron(Vec3 center, double size) {
 SceneDescription room(std::vector<Mesh> meshes, int width, int height, bool black_lights) {
     for (Mesh &wall : walls())
         meshes.push_back(std::move(wall));
-    meshes.push_back(made_of(quad({-0.2, 0.8, -0.5}, {0, 0, 0.6}, {0.6, 0, 0}), bsdf_record(BSDF_diffuse))); // a screen near the light
+    meshes.push_back(made_of(quad({-0.2, 0.8, -0.5}, {0, 0, 0.6}, {0.6, 0, 0}),
+                             bsdf_record(BSDF_diffuse))); // a screen near the light
     meshes.push_back(light(fan_light(), {6, 5, 4}));
     meshes.push_back(light(Parallelogram{{-0.98, -0.2, -0.3}, {0, 0.7, 0}, {0, 0, 0.8}}, {2, 4, 7}));
     for (Mesh &mesh : meshes)
@@ -72,8 +74,10 @@ TriangleMesh quad(Vec3 o, Vec3 u, Vec3 v) { return mesh_of({o, o + u, o + u + v,
 TriangleMesh cube(Vec3 center, double size, bool inwards) {
     TriangleMesh mesh;
     for (unsigned corner = 0; corner < 8; corner++)
-        mesh.positions.push_back(center + Vec3{corner & 1 ? size : -size, corner & 2 ? size : -size, corner & 4 ? size : -size});
-    const unsigned faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}; // outwards
+        mesh.positions.push_back(center +
+                                 Vec3{corner & 1 ? size : -size, corner & 2 ? size : -size, corner & 4 ? size : -size});
+    const unsigned faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                  {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}; // outwards
     for (const auto &f : faces)
         for (unsigned i : {1u, 2u}) {
             const unsigned b = f[inwards ? i + 1 : i], c = f[inwards ? i : i + 1];
@@ -114,16 +118,17 @@ SceneDescription furnace(double albedo, double emitted) {
 SceneDescription glass_furnace() {
     SceneDescription scene = furnace(0, 1);
     const TriangleMesh tetrahedron =
-        mesh_of({{-0.8, -0.7, -0.6}, {0.9, -0.6, -0.7}, {0.1, -0.5, 0.95}, {0.15, 0.85, -0.1}}, {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}});
+        mesh_of({{-0.8, -0.7, -0.6}, {0.9, -0.6, -0.7}, {0.1, -0.5, 0.95}, {0.15, 0.85, -0.1}},
+                {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}});
     scene.meshes.push_back(made_of(tetrahedron, bsdf_record(BSDF_dielectric)));
     scene.camera = camera({0.1, -0.3, -0.2}, {0.3, 0, 1}, 8, 8, 70);
     return scene;
 }
 
 SceneDescription triangle_light() {
-    SceneDescription scene = scene_of({diffuse(Parallelogram{{-3, 0, -3}, {0, 0, 6}, {6, 0, 0}}, float(floor_albedo), true),
-                                       light(mesh_of({light_corners[0], light_corners[1], light_corners[2]}, {{0, 1, 2}}),
-                                             {light_red, 2, 1})});
+    SceneDescription scene = scene_of(
+        {diffuse(Parallelogram{{-3, 0, -3}, {0, 0, 6}, {6, 0, 0}}, float(floor_albedo), true),
+         light(mesh_of({light_corners[0], light_corners[1], light_corners[2]}, {{0, 1, 2}}), {light_red, 2, 1})});
     scene.camera = camera({2, 1.5, -2}, floor_point, 4, 4, 1e-3);
     scene.strategy.max_depth = 2;
     return scene;
@@ -132,7 +137,8 @@ SceneDescription triangle_light() {
 double triangle_light_truth() {
     double sum = 0;
     for (int i = 0; i < 3; i++) {
-        const Vec3 a = normalize(light_corners[i] - floor_point), b = normalize(light_corners[(i + 1) % 3] - floor_point);
+        const Vec3 a = normalize(light_corners[i] - floor_point),
+                   b = normalize(light_corners[(i + 1) % 3] - floor_point);
         sum += std::acos(dot(a, b)) * normalize(cross(a, b)).y;
     }
     return floor_albedo / std::numbers::pi * light_red / 2 * std::abs(sum);
@@ -140,7 +146,8 @@ double triangle_light_truth() {
 
 SceneDescription averted_light() {
     SceneDescription scene = triangle_light();
-    std::swap(std::get<TriangleMesh>(scene.meshes[1].shape).positions[1], std::get<TriangleMesh>(scene.meshes[1].shape).positions[2]);
+    std::swap(std::get<TriangleMesh>(scene.meshes[1].shape).positions[1],
+              std::get<TriangleMesh>(scene.meshes[1].shape).positions[2]);
     return scene;
 }
 

@@ -1,4 +1,5 @@
-// Small scenes whose pictures are known, or hold a bit of everything. All are path tracers with MIS unless a test says otherwise.
+// Small scenes whose pictures are known, or hold a bit of everything. All are path tracers with MIS unless a test says
+// otherwise.
 #pragma once
 
 #include "support/plain_scenes.h"
@@ -18,36 +19,38 @@ TriangleMesh cube(Vec3 center, double size, bool inwards = false);
 BsdfRecord bsdf_record(int kind, float reflectance = 0.5f);
 Mesh made_of(TriangleMesh shape, const BsdfRecord &bsdf);
 
-// A closed cube whose walls have that albedo and emit that radiance, seen from inside. Radiance is the same L at every point in
-// every direction, so L = emitted + albedo L: every pixel of every full path tracer has the mean emitted / (1 - albedo).
+// A closed cube whose walls have that albedo and emit that radiance, seen from inside. Radiance is the same L at every
+// point in every direction, so L = emitted + albedo L: every pixel of every full path tracer has the mean emitted / (1
+// - albedo).
 SceneDescription furnace(double albedo, double emitted);
 
-// Black walls that emit 1, and the camera inside a tetrahedron of glass (index 1.5 in vacuum) within them, irregular so that no
-// path is caught for ever. A path carries weight 1 on each reflection and (n_inside / n_outside)^2 when it leaves the glass: every
-// sample is 1.5^2.
+// Black walls that emit 1, and the camera inside a tetrahedron of glass (index 1.5 in vacuum) within them, irregular so
+// that no path is caught for ever. A path carries weight 1 on each reflection and (n_inside / n_outside)^2 when it
+// leaves the glass: every sample is 1.5^2.
 SceneDescription glass_furnace();
 
 // The same light with its back to the floor.
 SceneDescription averted_light();
 
-// An octahedron with a normal at each vertex that points away from its middle, so that the interpolated one does so everywhere.
-// The camera looks through a tiny angle at a point whose direction from the middle is smooth_normal().
+// An octahedron with a normal at each vertex that points away from its middle, so that the interpolated one does so
+// everywhere. The camera looks through a tiny angle at a point whose direction from the middle is smooth_normal().
 SceneDescription smooth_octahedron();
 Vec3 smooth_normal();
 
-// A triangle that emits (3, 2, 1) above a diffuse floor of albedo 0.8, one bounce, in an empty world. The camera looks at the
-// floor through a tiny angle about `triangle_light_point`, so that one number is the truth (triangle_light_truth).
+// A triangle that emits (3, 2, 1) above a diffuse floor of albedo 0.8, one bounce, in an empty world. The camera looks
+// at the floor through a tiny angle about `triangle_light_point`, so that one number is the truth
+// (triangle_light_truth).
 SceneDescription triangle_light();
-// Lambert's formula (1760) for the irradiance from a uniform polygon: E = L/2 sum_i angle_i cos(n, normal of the plane through
-// the point and edge i); the radiance that leaves is albedo / pi E. Red, with L = 3.
+// Lambert's formula (1760) for the irradiance from a uniform polygon: E = L/2 sum_i angle_i cos(n, normal of the plane
+// through the point and edge i); the radiance that leaves is albedo / pi E. Red, with L = 3.
 double triangle_light_truth();
 
 // A point light of 100 W above a floor, seen as the triangle light's floor is, in red.
 SceneDescription point_light();
 double point_light_truth(); // albedo / pi * power / (4 pi) * cos / d^2
 
-// A closed room with each BSDF, each kind of area light (the mesh light's triangles differ 170-fold in area), shading normals: 45
-// triangles, so that 4 lanes and more do without a tree.
+// A closed room with each BSDF, each kind of area light (the mesh light's triangles differ 170-fold in area), shading
+// normals: 45 triangles, so that 4 lanes and more do without a tree.
 SceneDescription gallery(int width = 16, int height = 16);
 // The same without specular surfaces and with black lights: what light there is comes in one bounce or more.
 SceneDescription matte_gallery(int width = 16, int height = 16);

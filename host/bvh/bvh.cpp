@@ -1,0 +1,91 @@
+#include "bvh/bvh.h"
+
+#include "bvh/collapse.h"
+#include "bvh/reinsertion.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace opal {
+namespace {
+
+Box child_box(const BvhNode &node, int child) {
+    return {{node.lo[0][child], node.lo[1][child], node.lo[2][child]},
+            {node.hi[0][child], node.hi[1][child], node.hi[2][child]}};
+}
+
+double half_area(const Box &box) {
+    const double x = double(box.hi[0]) - box.lo[0], y = double(box.hi[1]) - box.lo[1],
+                 z = double(box.hi[2]) - box.lo[2];
+    return x * y + y * z + z * x;
+}
+
+} // namespace
+
+Bvh build_bvh(const TriangleSoup &soup) {
+    if (soup.corners.empty())
+        return {{empty_node()}, pack_blocks(soup)};
+    BinaryTree tree = build_binary_tree(references_of(soup));
+    optimise_by_reinsertion(tree);
+    return collapse(tree, soup);
+}
+
+BvhNode empty_node() {
+    BvhNode node;
+    std::fill_n(&node.lo[0][0], 3 * WIDTH, Box::INF);
+    std::fill_n(&node.hi[0][0], 3 * WIDTH, -Box::INF);
+    std::fill_n(node.child, WIDTH, OPAL_NONE);
+    return node;
+}
+
+TriangleBlock pack_block(const TriangleSoup &soup, const uint *ids, uint count) {
+    TriangleBlock block{};
+    for (uint place = 0; place < BLOCK_SIZE; place++) {
+        block.id[place] = place < count ? ids[place] : OPAL_NONE;
+        for (int corner = 0; corner < 3 && count > 0; corner++) {
+            // An unused place is the first corner thrice.
+            const uint vertex = place < count ? soup.corners[ids[place]][corner] : soup.corners[ids[0]][0];
+            for (int axis = 0; axis < 3; axis++)
+                block.vertex[corner][axis][place] = soup.vertices[vertex][axis];
+        }
+    }
+    return block;
+}
+
+std::vector<TriangleBlock> pack_blocks(const TriangleSoup &soup) {
+    std::vector<TriangleBlock> packed;
+    std::array<uint, BLOCK_SIZE> ids;
+    uint count = 0;
+    for (uint id = 0; id < soup.corners.size(); id++) {
+        ids[count++] = id;
+        if (count == BLOCK_SIZE)
+            packed.push_back(pack_block(soup, ids.data(), std::exchange(count, 0)));
+    }
+    if (count > 0 || packed.empty())
+        packed.push_back(pack_block(soup, ids.data(), count));
+    return packed;
+}
+
+double sah_cost(const Bvh &bvh) {
+    Box root = Box::empty();
+    for (int child = 0; child < WIDTH; child++)
+        if (bvh.nodes[0].child[child] != OPAL_NONE)
+            root.add(child_box(bvh.nodes[0], child));
+    double sum = NODE_COST * half_area(root);
+    for (const BvhNode &node : bvh.nodes)
+        for (int child = 0; child < WIDTH; child++)
+            if (node.child[child] != OPAL_NONE)
+                sum += half_area(child_box(node, child)) * (node.child[child] & OPAL_LEAF ? BLOCK_COST : NODE_COST);
+    return sum / half_area(root);
+}
+
+int levels_of(const Bvh &bvh) {
+    std::vector<int> levels(bvh.nodes.size(), 1);
+    for (std::size_t i = bvh.nodes.size(); i-- > 0;) // children come after their parents
+        for (uint child : bvh.nodes[i].child)
+            if (child != OPAL_NONE && !(child & OPAL_LEAF))
+                levels[i] = std::max(levels[i], levels[child] + 1);
+    return levels[0];
+}
+
+} // namespace opal

@@ -1,0 +1,163 @@
+#include "densities/sampled.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace opal {
+
+namespace {
+
+using stats::DomainKind;
+
+struct WarpRow {
+    const char *name;
+    DomainKind domain;
+};
+
+#define OPAL_WARP_ROW(name, domain) {#name, DomainKind::domain},
+#define OPAL_LOBE_ROW(name, domain, parameter, otherwise) {#name, DomainKind::domain},
+constexpr WarpRow warps[] = {OPAL_WARPS(OPAL_WARP_ROW, OPAL_WARP_ROW, OPAL_LOBE_ROW)};
+
+constexpr const char *bsdf_names[] = {
+#define OPAL_BSDF_NAME(name) #name,
+    OPAL_BSDFS(OPAL_BSDF_NAME)};
+
+constexpr double turn = 2 * std::numbers::pi;
+
+double angle_of(Vec3 w) { // azimuth in [0, 2 pi)
+    const double phi = std::atan2(w.y, w.x);
+    return phi < 0 ? phi + turn : phi;
+}
+
+// A lobe of this width, in radians, around direction w.
+void add_peak(Sampled &sampled, Vec3 w, double width) {
+    const double sine = std::hypot(w.x, w.y), low = sampled.domain->bounds.x0;
+    const std::vector<double> us = stats::splits_about(w.z, width * std::max(sine, width / 2), low, 1);
+    sampled.splits_u.insert(sampled.splits_u.end(), us.begin(), us.end());
+    if (sine > width)
+        for (double center : {angle_of(w) - turn, angle_of(w), angle_of(w) + turn}) {
+            const std::vector<double> vs = stats::splits_about(center, width / sine, 0, turn);
+            sampled.splits_v.insert(sampled.splits_v.end(), vs.begin(), vs.end());
+        }
+}
+
+double lobe_width(const BsdfRecord &bsdf) {
+    switch (bsdf.kind) {
+    case BSDF_microfacet:
+        return 2 * bsdf.u.microfacet.alpha;
+    case BSDF_phong:
+        return 1 / std::sqrt(bsdf.u.phong.n + 1);
+    default:
+        return 0; // none
+    }
+}
+
+bool is_black(Vec3 weight) { return weight.x == 0 && weight.y == 0 && weight.z == 0; }
+
+} // namespace
+
+const char *warp_name(int warp) { return warps[warp].name; }
+
+bool is_discrete(int bsdf_kind) { return bsdf_kind == BSDF_mirror || bsdf_kind == BSDF_dielectric; }
+
+Sampled sampled_warp(KernelProbe &probe, int warp, float parameter) {
+    Sampled sampled;
+    sampled.name = warps[warp].name;
+    sampled.domain = &stats::domain(warps[warp].domain);
+    sampled.draw = [&probe, warp, parameter](const Planes &numbers, stats::Histogram &histogram) {
+        const Planes drawn = probe.warp_sample(warp, parameter, numbers);
+        for (size_t i = 0; i < drawn.count; i++)
+            histogram.add(drawn.vec3(WARP_X, i));
+    };
+    sampled.density = [&probe, warp, parameter](std::span<const Vec3> points, std::span<double> values) {
+        const Planes pdf = probe.warp_pdf(warp, parameter, points);
+        std::copy_n(pdf.values.begin(), points.size(), values.begin());
+    };
+    if (warp == WARP_beckmann)
+        add_peak(sampled, {0, 0, 1}, parameter);
+    if (warp == WARP_phong_lobe)
+        add_peak(sampled, {0, 0, 1}, 1 / std::sqrt(parameter + 1));
+    if (warp == WARP_tent)
+        sampled.splits_u = sampled.splits_v = {0};
+    return sampled;
+}
+
+Sampled sampled_bsdf(KernelProbe &probe, unsigned id, Vec3 wi) {
+    const BsdfRecord bsdf = probe.scene().bsdfs.at(id);
+    Sampled sampled;
+    sampled.name = bsdf_names[bsdf.kind];
+    if (is_discrete(int(bsdf.kind)))
+        throw Error(fmt::format("a {} is discrete: its directions have no density to compare with", sampled.name));
+    sampled.domain = &stats::domain(DomainKind::sphere);
+    sampled.may_fail = true;
+    sampled.draw = [&probe, id, wi](const Planes &numbers, stats::Histogram &histogram) {
+        const Planes drawn = probe.bsdf_sample(id, wi, numbers);
+        for (size_t i = 0; i < drawn.count; i++)
+            if (is_black(drawn.vec3(BSDF_WEIGHT_R, i)) && drawn.at(BSDF_PDF, i) == 0)
+                histogram.add_failed();
+            else
+                histogram.add(drawn.vec3(BSDF_WO_X, i));
+    };
+    sampled.density = [&probe, id, wi](std::span<const Vec3> points, std::span<double> values) {
+        const Planes f = probe.bsdf_eval(id, wi, points);
+        std::copy_n(f.values.begin() + std::ptrdiff_t(EVAL_PDF * f.stride), points.size(), values.begin());
+    };
+    sampled.splits_u = {0};
+    sampled.relative_error = 1e-4; // directions in single precision leave a narrow lobe no more
+    if (const double width = lobe_width(bsdf); width > 0) {
+        add_peak(sampled, {-wi.x, -wi.y, wi.z}, width);
+        const std::vector<double> grazing = stats::splits_about(wi.z, wi.z / 2, -1, 1); // where 1 / h.wo is steep
+        if (bsdf.kind == BSDF_microfacet && wi.z < 0.2)
+            sampled.splits_u.insert(sampled.splits_u.end(), grazing.begin(), grazing.end());
+    }
+    return sampled;
+}
+
+Sampled sampled_lights(KernelProbe &probe) {
+    Sampled sampled;
+    sampled.name = "light";
+    sampled.domain = &stats::domain(DomainKind::square);
+    const Vec3 center = probe.scene().center;
+    const double scale = probe.scene().scale;
+    sampled.draw = [&probe, center, scale](const Planes &numbers, stats::Histogram &histogram) {
+        const Planes drawn = probe.light_sample(numbers);
+        for (size_t i = 0; i < drawn.count; i++)
+            histogram.add(drawn.vec3(LIGHT_X, i) * (1 / scale) + center);
+    };
+    sampled.density = [&probe, center, scale](std::span<const Vec3> points, std::span<double> values) {
+        Planes rays(RAY_PLANES, points.size());
+        for (size_t i = 0; i < points.size(); i++) { // from above, straight down
+            const Vec3 o = (points[i] + Vec3{0, 0, 1} - center) * scale;
+            const double ray[RAY_PLANES] = {o.x, o.y, o.z, 0, 0, -1, 0, 4 * scale};
+            for (size_t plane = 0; plane < RAY_PLANES; plane++)
+                rays.at(plane, i) = float(ray[plane]);
+        }
+        const Planes hits = probe.trace(rays);
+        for (size_t i = 0; i < points.size(); i++)
+            values[i] = hits.at(HIT_LIGHT_DENSITY, i) * scale * scale; // a density over area in the scene's own units
+    };
+    sampled.relative_error = 2e-3; // it jumps from triangle to triangle
+    return sampled;
+}
+
+void draw_in_batches(KernelProbe &probe, size_t count, unsigned seed, const std::function<void(const Planes &)> &use) {
+    constexpr size_t batch = 1 << 19;
+    NumberOptions options;
+    for (size_t done = 0; done < count; done += batch) {
+        options.seed = seed + unsigned(done / batch) * 0x9e3779b9u;
+        use(probe.numbers(std::min(batch, count - done), options));
+    }
+}
+
+DensityCheck check_density(KernelProbe &probe, const Sampled &sampled, int nu, int nv, size_t count, unsigned seed,
+                           const stats::ChiSquareOptions &options) {
+    DensityCheck check{stats::Histogram({sampled.domain, nu, nv}), {}};
+    draw_in_batches(probe, count, seed, [&](const Planes &numbers) { sampled.draw(numbers, check.histogram); });
+    check.test = density_test(check.histogram, sampled.density, sampled.may_fail, sampled.splits_u, sampled.splits_v,
+                              options, sampled.relative_error);
+    return check;
+}
+
+} // namespace opal

@@ -1,0 +1,46 @@
+// What the device draws beside what it says about the density: a warp, a BSDF seen from one direction, the lights of a
+// scene.
+#pragma once
+
+#include "probe/kernel_probe.h"
+
+#include <functional>
+#include <string>
+
+namespace opal {
+
+struct Sampled {
+    std::string name;
+    const stats::Domain *domain = nullptr;
+    std::function<void(const Planes &numbers, stats::Histogram &histogram)>
+        draw;                               // adds a sample for each of the numbers
+    stats::Density density;                 // the device's own, over the domain's measure
+    bool may_fail = false;                  // draws without a sample are right (host/stats/histogram.h)
+    std::vector<double> splits_u, splits_v; // where quadrature finds its peaks and edges
+    double relative_error = 1e-5;           // that quadrature can reach
+};
+
+const char *warp_name(int warp);
+Sampled sampled_warp(KernelProbe &probe, int warp, float parameter);
+
+// The BSDF `id` of the probe's scene, over the whole sphere. A draw of weight 0 whose density is 0 too has failed.
+// Error: a discrete BSDF, which has no density.
+Sampled sampled_bsdf(KernelProbe &probe, unsigned id, Vec3 wi);
+bool is_discrete(int bsdf_kind);
+
+// The lights of the probe's scene, which lie in the unit square of the plane z = 0 and are not point lights.
+Sampled sampled_lights(KernelProbe &probe);
+
+struct DensityCheck {
+    stats::Histogram histogram;
+    stats::DensityTest test;
+};
+// Chi-square of `count` samples on a grid of nu x nv cells.
+DensityCheck check_density(KernelProbe &probe, const Sampled &sampled, int nu, int nv, size_t count, unsigned seed,
+                           const stats::ChiSquareOptions &options = {});
+
+// Draws `count` samples in batches that memory holds: `use` gets the numbers of each.
+void draw_in_batches(KernelProbe &probe, size_t count, unsigned seed,
+                     const std::function<void(const Planes &numbers)> &use);
+
+} // namespace opal

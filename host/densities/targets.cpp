@@ -1,0 +1,196 @@
+#include "densities/targets.h"
+
+#include "base/table.h"
+#include "read/nori/load.h"
+#include "read/nori/parsers.h"
+#include "scene/options.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+namespace opal {
+
+namespace {
+
+using Parameters = std::map<std::string, std::string>;
+
+#define OPAL_NO_PARAMETER(name, domain) {#name, ""},
+#define OPAL_PARAMETER(name, domain, parameter, otherwise) {#name, #parameter},
+#define OPAL_NO_DEFAULT(name, domain) {"", 0.f},
+#define OPAL_DEFAULT(name, domain, parameter, otherwise) {#parameter, otherwise},
+const std::vector<TargetName> warp_names = {OPAL_WARPS(OPAL_NO_PARAMETER, OPAL_NO_PARAMETER, OPAL_PARAMETER)};
+const std::pair<const char *, float> warp_defaults[] = {OPAL_WARPS(OPAL_NO_DEFAULT, OPAL_NO_DEFAULT, OPAL_DEFAULT)};
+
+double number_of(const Parameters &parameters, const std::string &name, double otherwise) {
+    const auto found = parameters.find(name);
+    return found == parameters.end() ? otherwise : parse_number(found->second);
+}
+
+// Every parameter given must be one of these.
+void allow(const Parameters &parameters, const std::string &target, const std::set<std::string> &known) {
+    for (const auto &[name, value] : parameters)
+        if (!known.count(name))
+            throw Error(fmt::format("{} has no parameter --{}; available: {}", target, name,
+                                    known.empty() ? "none" : fmt::format("--{}", fmt::join(known, ", --"))));
+}
+
+Target open_warp(int warp, const Parameters &parameters, const Device &device, const BuildOptions &build,
+                 const Sources &sources) {
+    const auto &[parameter, otherwise] = warp_defaults[warp];
+    allow(parameters, warp_name(warp), *parameter ? std::set<std::string>{parameter} : std::set<std::string>{});
+    Target target;
+    const double value = *parameter ? number_of(parameters, parameter, otherwise) : 0;
+    if (*parameter && !(value > 0))
+        throw Error(fmt::format("{} needs a positive --{}", warp_name(warp), parameter));
+    target.probe = std::make_unique<KernelProbe>(device, scene_of_bsdfs({}), build, sources);
+    target.sampled = sampled_warp(*target.probe, warp, float(value));
+    target.description = *parameter ? fmt::format("{} {} {:g}", warp_name(warp), parameter, value) : warp_name(warp);
+    return target;
+}
+
+// As a scene would say it, so that defaults and checks are the scene's.
+Bsdf parse_parameters(const std::string &kind, const Parameters &parameters) {
+    std::string xml = fmt::format("<bsdf type=\"{}\">", kind);
+    for (const TargetParameter &row : target_parameters())
+        if (const auto found = parameters.find(row.name); found != parameters.end() && !row.tag.empty()) {
+            const bool single = row.tag == "color" && split(found->second).size() == 1;
+            const std::string value = single ? fmt::format("{0} {0} {0}", found->second) : found->second;
+            xml += fmt::format("<{} name=\"{}\" value=\"{}\"/>", row.tag, row.xml_name, value);
+        }
+    const XmlDocument document("command line, as XML", xml + "</bsdf>");
+    return parse_bsdf(document.root(), {});
+}
+
+Target open_bsdf(const std::string &kind, const Parameters &parameters, const Device &device, const BuildOptions &build,
+                 const Sources &sources) {
+    const Bsdf bsdf = parse_parameters(kind, parameters);
+    const double theta = number_of(parameters, "theta", 30) * std::numbers::pi / 180,
+                 phi = number_of(parameters, "phi", 0) * std::numbers::pi / 180;
+    const Vec3 wi = {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+    Target target;
+    target.probe = std::make_unique<KernelProbe>(device, scene_of_bsdfs({bsdf.record}), build, sources);
+    target.sampled = sampled_bsdf(*target.probe, 0, wi);
+    target.description = kind;
+    for (const auto &[name, value] : parameters)
+        target.description += fmt::format(" {} {}", name, value);
+    if (!parameters.count("theta"))
+        target.description += " theta 30";
+    return target;
+}
+
+// Part of the unit square of the plane z = 0 as a light: triangles between these points, or one parallelogram.
+Mesh light_mesh(std::vector<Vec3> points, const std::vector<std::array<unsigned, 3>> &triangles, double radiance) {
+    TriangleMesh shape;
+    shape.positions = std::move(points);
+    for (const auto &[a, b, c] : triangles)
+        shape.triangles.push_back({{{a, OPAL_NONE}, {b, OPAL_NONE}, {c, OPAL_NONE}}});
+    Mesh mesh;
+    mesh.shape = shape;
+    mesh.bsdf = default_bsdf();
+    mesh.radiance = Color{radiance, radiance, radiance};
+    return mesh;
+}
+
+Mesh light_parallelogram(Vec3 origin, Vec3 u, Vec3 v, double radiance) {
+    Mesh mesh = light_mesh({}, {}, radiance);
+    mesh.shape = Parallelogram{origin, u, v};
+    return mesh;
+}
+
+// The square in seven triangles of very different size, one of them a sliver.
+Mesh light_triangles(double x0, double x1, double radiance) {
+    std::vector<Vec3> p = {{x0, 0, 0},    {x1, 0, 0},   {x1, 1, 0}, {x0, 1, 0}, {x0 + (x1 - x0) * 0.7, 0.35, 0},
+                           {x1, 0.36, 0}, {x1, 0.37, 0}};
+    return light_mesh(p, {{0, 1, 4}, {1, 5, 4}, {5, 6, 4}, {6, 2, 4}, {2, 3, 4}, {3, 0, 4}}, radiance);
+}
+
+struct LightRow {
+    const char *name;
+    std::vector<Mesh> (*meshes)();
+};
+const std::vector<LightRow> lights = {
+    {"parallelogram",
+     [] {
+         return std::vector<Mesh>{light_parallelogram({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1)};
+     }},
+    {"mesh", [] { return std::vector<Mesh>{light_triangles(0, 1, 1)}; }},
+    {"many",
+     [] {
+         return std::vector<Mesh>{
+             light_parallelogram({0, 0, 0}, {0.25, 0, 0}, {0, 1, 0}, 1), light_triangles(0.25, 0.75, 2),
+             light_parallelogram({0.75, 0, 0}, {0.25, 0, 0}, {0, 0.5171, 0}, 5)}; // its end lies between cells
+     }},
+};
+
+Target open_light(const LightRow &row, const Parameters &parameters, const Parameters &axes, const Device &device,
+                  const BuildOptions &build, const Sources &sources) {
+    allow(parameters, "light:" + std::string(row.name), {});
+    SceneDescription scene;
+    scene.meshes = row.meshes();
+    apply_integrator(scene.strategy, find_integrator("path_mis"));
+    override_strategy(scene.strategy, axes);
+    Target target;
+    target.probe = std::make_unique<KernelProbe>(device, flatten(scene, build.lanes), build, sources);
+    target.sampled = sampled_lights(*target.probe);
+    target.description = fmt::format("light {}", row.name);
+    for (const auto &[name, value] : axes)
+        target.description += fmt::format(" {} {}", name, value);
+    return target;
+}
+
+std::vector<TargetName> all_targets() {
+    std::vector<TargetName> names = warp_names;
+    names.insert(names.end(), {{"bsdf:diffuse", "albedo, use-cosine"},
+                               {"bsdf:microfacet", "alpha, int-ior, ext-ior, kd"},
+                               {"bsdf:phong", "kd, ks, pd, n"}});
+    for (TargetName &name : names)
+        if (name.name.starts_with("bsdf:"))
+            name.parameters += ", theta, phi";
+    for (const LightRow &light : lights)
+        names.push_back({"light:" + std::string(light.name), "triangle-choice, emitter-choice"});
+    return names;
+}
+
+} // namespace
+
+const std::vector<TargetName> &targets() {
+    static const std::vector<TargetName> all = all_targets();
+    return all;
+}
+
+const std::vector<TargetParameter> &target_parameters() {
+    static const std::vector<TargetParameter> all = {
+        {"alpha", "float", "alpha", "roughness of beckmann and microfacet"},
+        {"n", "float", "n", "exponent of phong"},
+        {"theta", "", "", "of the incident direction to the normal, degrees [30]"},
+        {"phi", "", "", "of the incident direction, degrees [0]"},
+        {"albedo", "color", "albedo", "of diffuse: one number or three"},
+        {"use-cosine", "boolean", "use_cosine", "of diffuse: true or false"},
+        {"kd", "color", "kd", "diffuse reflectance of microfacet and phong: one number or three"},
+        {"ks", "color", "ks", "specular reflectance of phong: one number or three"},
+        {"pd", "float", "pd", "share of the diffuse part of phong"},
+        {"int-ior", "float", "intIOR", "of microfacet"},
+        {"ext-ior", "float", "extIOR", "of microfacet"},
+    };
+    return all;
+}
+
+Target open_target(const std::string &name, const Parameters &parameters, const Parameters &axes, const Device &device,
+                   const BuildOptions &build, const Sources &sources) {
+    find_row(targets(), "warp", name);
+    if (name.starts_with("light:"))
+        return open_light(find_row(lights, "light", name.substr(6)), parameters, axes, device, build, sources);
+    if (!axes.empty())
+        throw Error(fmt::format("--{} means something for light:... only", axes.begin()->first));
+    if (name.starts_with("bsdf:"))
+        return open_bsdf(name.substr(5), parameters, device, build, sources);
+    for (int warp = 0; warp < WARP_COUNT; warp++)
+        if (name == warp_name(warp))
+            return open_warp(warp, parameters, device, build, sources);
+    throw Error("no such warp: " + name); // targets() has no other names
+}
+
+} // namespace opal

@@ -1,0 +1,36 @@
+// What `opal warp` can show, by name.
+#pragma once
+
+#include "densities/sampled.h"
+
+#include <map>
+#include <memory>
+#include <string>
+
+namespace opal {
+
+struct Target {
+    std::unique_ptr<KernelProbe> probe;
+    Sampled sampled;
+    std::string description; // "microfacet alpha 0.1, wi at 60 degrees"
+};
+
+struct TargetName {
+    std::string name;       // "beckmann", "bsdf:phong", "light:mesh"
+    std::string parameters; // "alpha" ...
+};
+const std::vector<TargetName> &targets();
+
+// A parameter as the command line names it, with its XML tag and name where BSDFs have it.
+struct TargetParameter {
+    std::string name, tag, xml_name, help;
+};
+const std::vector<TargetParameter> &target_parameters();
+
+// Parameters by name ("alpha" -> "0.1"); `axes` by strategy option ("triangle-choice" -> "uniform"). Throws Error for
+// names and values that do not exist.
+Target open_target(const std::string &name, const std::map<std::string, std::string> &parameters,
+                   const std::map<std::string, std::string> &axes, const Device &device, const BuildOptions &build,
+                   const Sources &sources);
+
+} // namespace opal

@@ -1,0 +1,76 @@
+// The camera and its reconstruction filter.
+#include "read/nori/parsers.h"
+
+namespace opal {
+
+namespace {
+
+void parse_box(Properties &, Filter &filter) { filter.radius = 0.5; }
+
+void parse_tent(Properties &, Filter &filter) { filter.radius = 1; }
+
+void parse_gaussian(Properties &properties, Filter &filter) {
+    filter.radius = properties.number("radius").value_or(2);
+    filter.stddev = properties.number("stddev").value_or(0.5);
+    properties.check(filter.radius > 0, "radius", "must be positive");
+    properties.check(filter.stddev > 0, "stddev", "must be positive");
+}
+
+void parse_mitchell(Properties &properties, Filter &filter) {
+    filter.radius = properties.number("radius").value_or(2);
+    filter.b = properties.number("B").value_or(1.0 / 3);
+    filter.c = properties.number("C").value_or(1.0 / 3);
+    properties.check(filter.radius > 0, "radius", "must be positive");
+}
+
+struct FilterType {
+    std::string name;
+    int kind;
+    void (*parse)(Properties &, Filter &);
+};
+
+#define OPAL_FILTER_TYPE(name) {#name, FILTER_##name, parse_##name},
+const std::vector<FilterType> filter_types = {OPAL_FILTERS(OPAL_FILTER_TYPE)};
+
+struct CameraType {
+    std::string name;
+};
+
+const std::vector<CameraType> camera_types = {{"perspective"}};
+
+} // namespace
+
+Filter parse_filter(const XmlNode &node, const ParseContext &context) {
+    const FilterType &type = row_of_type(node, filter_types);
+    Properties properties(node, context);
+    Filter filter;
+    filter.kind = type.kind;
+    filter.given = true;
+    type.parse(properties, filter);
+    properties.finish();
+    return filter;
+}
+
+Camera parse_camera(const XmlNode &node, const ParseContext &context) {
+    row_of_type(node, camera_types);
+    Properties properties(node, context);
+    Camera camera;
+    camera.place = node.place();
+    camera.to_world = properties.transform("toWorld").value_or(Transform());
+    camera.width = properties.integer("width").value_or(camera.width);
+    camera.height = properties.integer("height").value_or(camera.height);
+    camera.fov = properties.number("fov").value_or(camera.fov);
+    camera.near_clip = properties.number("nearClip").value_or(camera.near_clip);
+    camera.far_clip = properties.number("farClip").value_or(camera.far_clip);
+    properties.check(camera.width >= 1, "width", "must be at least 1 pixel");
+    properties.check(camera.height >= 1, "height", "must be at least 1 pixel");
+    properties.check(camera.fov > 0 && camera.fov < 180, "fov", "must lie between 0 and 180 degrees");
+    properties.check(camera.near_clip >= 0, "nearClip", "must not be negative");
+    properties.check(camera.far_clip > camera.near_clip, "farClip", "must be larger than nearClip");
+    if (auto filter = properties.child("rfilter"))
+        camera.filter = parse_filter(*filter, context);
+    properties.finish();
+    return camera;
+}
+
+} // namespace opal

@@ -1,0 +1,86 @@
+// The integrators' XML: the properties of both dialects, turned into choices of the strategy axes.
+#include "read/nori/parsers.h"
+#include "scene/options.h"
+
+#include <algorithm>
+
+namespace opal {
+
+namespace {
+
+void parse_normals(Properties &properties, SceneDescription &scene) {
+    scene.normals_signed = properties.boolean("signed").value_or(false);
+}
+
+void parse_ao(Properties &properties, SceneDescription &scene) {
+    bool cosine = properties.boolean("cosine_sampling").value_or(true);
+    scene.strategy[AXIS_hemisphere] = cosine ? CHOICE_hemisphere_cosine : CHOICE_hemisphere_uniform;
+}
+
+void parse_simple(Properties &properties, SceneDescription &scene) {
+    scene.simple_light.position = properties.required(properties.point("position"), "position");
+    scene.simple_light.energy = properties.required(properties.color("energy"), "energy");
+    const Color &energy = scene.simple_light.energy;
+    properties.check(*std::min_element(energy.begin(), energy.end()) >= 0, "energy", "must not be negative");
+}
+
+void parse_direct_lighting(Properties &properties, SceneDescription &scene) {
+    bool surface = properties.boolean("surface_sampling").value_or(false);
+    bool mis = properties.boolean("mis_sampling").value_or(false);
+    Strategy &strategy = scene.strategy;
+    strategy[AXIS_lighting] = mis ? CHOICE_lighting_mis : surface ? CHOICE_lighting_emitter : CHOICE_lighting_bsdf;
+    if (mis)
+        strategy[AXIS_mis] = CHOICE_mis_one_sample;
+}
+
+// rr and mis are booleans here and strings as Opal's axes: both are understood.
+void parse_path_tracer_recursive(Properties &properties, SceneDescription &scene) {
+    bool nee = properties.boolean("nee").value_or(false), mis = properties.boolean_if("mis").value_or(false);
+    bool rr = properties.boolean_if("rr").value_or(false);
+    bool fixed = properties.number("rr_prob").has_value();
+    bool dynamic = properties.boolean("rr_dynamic").value_or(!fixed); // the course's exporter writes it
+    properties.ignore("iterative");                                   // how some solutions loop
+    Strategy &strategy = scene.strategy;
+    strategy[AXIS_lighting] = mis ? CHOICE_lighting_mis : nee ? CHOICE_lighting_emitter : CHOICE_lighting_bsdf;
+    strategy[AXIS_rr] = !rr ? CHOICE_rr_off : fixed && !dynamic ? CHOICE_rr_fixed : CHOICE_rr_throughput_eta;
+}
+
+struct Parser {
+    std::string name;
+    void (*parse)(Properties &, SceneDescription &);
+};
+
+// Integrators that are not here have no properties of their own.
+const std::vector<Parser> parsers = {{"normals", parse_normals},
+                                     {"ao", parse_ao},
+                                     {"simple", parse_simple},
+                                     {"direct_lighting", parse_direct_lighting},
+                                     {"path_tracer_recursive", parse_path_tracer_recursive}};
+
+// Every axis and number can be written as a property too, and then wins.
+void parse_options(Properties &properties, Strategy &strategy) {
+    for (const Option &option : options())
+        if (auto value = properties.text(option.xml_tag, option.xml_name))
+            try {
+                set_option(strategy, option.name, *value);
+            } catch (const Error &error) {
+                properties.fail_at(option.xml_name, error.what());
+            }
+}
+
+} // namespace
+
+void parse_integrator(const XmlNode &node, const ParseContext &context, SceneDescription &scene) {
+    const IntegratorType &type = row_of_type(node, integrator_types());
+    Properties properties(node, context);
+    scene.integrator_type = type.name;
+    scene.university_dialect = type.university;
+    apply_integrator(scene.strategy, type);
+    for (const Parser &parser : parsers)
+        if (parser.name == type.name)
+            parser.parse(properties, scene);
+    parse_options(properties, scene.strategy);
+    properties.finish();
+}
+
+} // namespace opal

@@ -1,0 +1,78 @@
+#include "read/nori/load.h"
+
+#include "base/log.h"
+#include "read/nori/parsers.h"
+#include "scene/options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace opal {
+
+namespace {
+
+// Without an <rfilter>, each dialect has a filter of its own (SCENE_FORMAT section 3).
+void choose_filter(SceneDescription &scene) {
+    Filter &filter = scene.camera.filter;
+    if (filter.given)
+        return;
+    filter.kind = scene.university_dialect ? FILTER_box : FILTER_gaussian;
+    filter.radius = scene.university_dialect ? 0.5 : 2;
+}
+
+bool has_light(const SceneDescription &scene) {
+    bool needs_none = scene.strategy[AXIS_integrator] == CHOICE_integrator_normals ||
+                      scene.strategy[AXIS_integrator] == CHOICE_integrator_ao ||
+                      scene.strategy[AXIS_integrator] == CHOICE_integrator_simple;
+    return needs_none || !scene.point_lights.empty() ||
+           std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh &mesh) { return mesh.radiance; });
+}
+
+void warn_if_black(const SceneDescription &scene, const XmlNode &node) {
+    if (scene.meshes.empty())
+        warn(node.place().text() + ": the scene has no <mesh>; it renders black");
+    else if (!has_light(scene))
+        warn(node.place().text() + ": the scene has no <emitter>; it renders black");
+}
+
+} // namespace
+
+SceneDescription parse_scene(const XmlNode &node, const ParseContext &context) {
+    Properties properties(node, context, false);
+    SceneDescription scene;
+    scene.file = node.place().file;
+    apply_integrator(scene.strategy, find_integrator(scene.integrator_type));
+    auto camera = properties.child("camera");
+    if (!camera)
+        properties.fail("<scene> lacks its <camera>");
+    if (auto integrator = properties.child("integrator"))
+        parse_integrator(*integrator, context, scene);
+    if (auto sampler = properties.child("sampler"))
+        parse_sampler(*sampler, context, scene);
+    scene.camera = parse_camera(*camera, context);
+    for (const XmlNode &mesh : properties.children("mesh"))
+        scene.meshes.push_back(parse_mesh(mesh, context));
+    for (const XmlNode &emitter : properties.children("emitter"))
+        scene.point_lights.push_back(parse_scene_emitter(emitter, context));
+    properties.finish();
+    choose_filter(scene);
+    warn_if_black(scene, node);
+    return scene;
+}
+
+SceneDescription load_scene(const std::filesystem::path &file, const LoadOptions &options) {
+    XmlDocument document(file);
+    XmlNode root = document.root();
+    if (root.tag() == "test")
+        root.fail("this is a <test>, not a <scene>: run it with `opal test`");
+    if (root.tag() != "scene")
+        root.fail(unknown_name("root", root.tag(), {"scene", "test"}));
+    SceneDescription scene = parse_scene(root, {file.parent_path(), options.lenient});
+    if (!scene.camera.filter.given)
+        info(fmt::format("no <rfilter>: {}, as scenes with integrator {} mean it",
+                         scene.university_dialect ? "box" : "gaussian", scene.integrator_type));
+    return scene;
+}
+
+} // namespace opal

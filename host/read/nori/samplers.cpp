@@ -1,0 +1,16 @@
+// The sampler: where the random numbers come from, and how many samples a pixel gets.
+#include "read/nori/parsers.h"
+
+namespace opal {
+
+void parse_sampler(const XmlNode &node, const ParseContext &context, SceneDescription &scene) {
+    std::span<const Choice> types = axes()[AXIS_sampler].choices;
+    scene.strategy[AXIS_sampler] = static_cast<int>(&row_of_type(node, types) - types.data());
+    Properties properties(node, context);
+    int count = properties.integer("sampleCount").value_or(1);
+    properties.check(count >= 1, "sampleCount", "must be at least 1 sample per pixel");
+    scene.spp = static_cast<unsigned>(count);
+    properties.finish();
+}
+
+} // namespace opal

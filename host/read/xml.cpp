@@ -1,0 +1,92 @@
+#include "read/xml.h"
+
+#include "base/error.h"
+#include "base/read_file.h"
+#include "base/table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+
+namespace opal {
+
+namespace {
+
+[[noreturn]] void fail_at(const SourcePlace &place, const std::string &message) {
+    throw Error(place.text() + ": " + message);
+}
+
+bool is_text(pugi::xml_node node) { return node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata; }
+
+// The elements below a node; text is an Error at its first character that is not blank.
+std::vector<XmlNode> elements_of(const XmlDocument &document, pugi::xml_node parent) {
+    std::vector<XmlNode> elements;
+    for (pugi::xml_node child : parent.children()) {
+        if (is_text(child)) {
+            size_t start = document.text().find_first_not_of(" \t\r\n", size_t(child.offset_debug()));
+            fail_at(document.place(ptrdiff_t(start)),
+                    "text between the tags: nothing but tags and comments may stand here");
+        }
+        if (child.type() == pugi::node_element)
+            elements.emplace_back(document, child);
+    }
+    return elements;
+}
+
+} // namespace
+
+SourcePlace place_in(const std::string &file, std::string_view text, ptrdiff_t offset) {
+    auto end = text.begin() + std::clamp<ptrdiff_t>(offset, 0, ptrdiff_t(text.size()));
+    auto line = std::count(text.begin(), end, '\n');
+    auto start = std::find(std::make_reverse_iterator(end), text.rend(), '\n').base();
+    auto column = std::count_if(start, end, [](char c) { return (c & 0xc0) != 0x80; });
+    return {file, int(line) + 1, int(column) + 1};
+}
+
+SourcePlace XmlNode::place() const { return document_->place(node_.offset_debug() - 1); }
+
+std::vector<XmlNode> XmlNode::children() const { return elements_of(*document_, node_); }
+
+void XmlNode::require_attributes(std::initializer_list<const char *> names) const {
+    std::vector<std::string> known(names.begin(), names.end()), seen;
+    for (pugi::xml_attribute attribute : node_.attributes()) {
+        std::string name = attribute.name();
+        if (std::find(known.begin(), known.end(), name) == known.end())
+            fail(unknown_name("attribute", name, known, fmt::format(" of <{}>", tag())));
+        if (std::find(seen.begin(), seen.end(), name) != seen.end())
+            fail(fmt::format("<{}> has the attribute '{}' twice", tag(), name));
+        seen.push_back(name);
+    }
+    for (const std::string &name : known)
+        if (std::find(seen.begin(), seen.end(), name) == seen.end())
+            fail(fmt::format("<{}> lacks the attribute '{}'", tag(), name));
+}
+
+void XmlNode::fail(const std::string &message) const { fail_at(place(), message); }
+
+XmlDocument::XmlDocument(const std::filesystem::path &file) : XmlDocument(file, read_file(file)) {}
+
+XmlDocument::XmlDocument(const std::filesystem::path &file, std::string text)
+    : file_(file.string()), text_(std::move(text)) {
+    if (text_.starts_with("\xef\xbb\xbf"))
+        text_.erase(0, 3); // a byte order mark would shift every offset
+    // As a fragment, so that text and second roots beside the root are seen instead of skipped.
+    pugi::xml_parse_result result = document_.load_buffer(
+        text_.data(), text_.size(), pugi::parse_default | pugi::parse_fragment, pugi::encoding_utf8);
+    if (result.status == pugi::status_out_of_memory)
+        cannot_read(file, ENOMEM);
+    if (!result)
+        fail_at(place(result.offset), std::string("not well-formed XML: ") + result.description());
+}
+
+XmlNode XmlDocument::root() const {
+    std::vector<XmlNode> roots = elements_of(*this, document_);
+    if (roots.empty())
+        fail_at(place(0), "holds no <scene>");
+    if (roots.size() > 1)
+        roots[1].fail("a second root <" + roots[1].tag() + ">; a file holds one");
+    return roots[0];
+}
+
+} // namespace opal

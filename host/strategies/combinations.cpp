@@ -1,0 +1,224 @@
+#include "strategies/combinations.h"
+
+#include "base/error.h"
+#include "scene/options.h"
+#include "strategies/check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <sstream>
+
+namespace opal {
+
+std::vector<std::string> split(const std::string &text, char separator) {
+    std::vector<std::string> parts;
+    std::istringstream stream(text);
+    for (std::string part; std::getline(stream, part, separator);) {
+        const size_t first = part.find_first_not_of(" \n"), last = part.find_last_not_of(" \n");
+        if (first != std::string::npos)
+            parts.push_back(part.substr(first, last - first + 1));
+    }
+    return parts;
+}
+
+namespace {
+
+using Choices = std::array<int, AXIS_COUNT>;
+
+std::map<std::string, std::string> overrides_of(const std::string &text) {
+    std::map<std::string, std::string> overrides;
+    for (const std::string &part : split(text, ',')) {
+        const size_t equals = part.find('=');
+        if (equals == std::string::npos || equals == 0 || equals + 1 == part.size())
+            throw Error(fmt::format("'{}' is not AXIS=CHOICE, as in lighting=mis,mis=power;lighting=emitter", part));
+        if (!overrides.emplace(part.substr(0, equals), part.substr(equals + 1)).second)
+            throw Error(fmt::format("'{}' is given twice", part.substr(0, equals)));
+    }
+    return overrides;
+}
+
+// What of a scene decides which axes matter, with its strategy; the shapes are left out, so that copies are cheap.
+class Candidates {
+public:
+    explicit Candidates(const SceneDescription &scene) : scene_(scene), own_(scene.strategy.choices) {
+        size_t emitters = scene.point_lights.size();
+        for (Mesh &mesh : scene_.meshes) {
+            const auto *triangles = std::get_if<TriangleMesh>(&mesh.shape);
+            emitters += mesh.radiance.has_value();
+            light_triangles_ = light_triangles_ || (mesh.radiance && triangles && triangles->triangles.size() > 1);
+            diffuse_ = diffuse_ || mesh.bsdf.record.kind == BSDF_diffuse;
+            refracts_ = refracts_ || mesh.bsdf.record.kind == BSDF_dielectric;
+            mesh.shape = Parallelogram{};
+        }
+        many_emitters_ = emitters > 1;
+    }
+
+    std::vector<Choices> all() {
+        extend(AXIS_integrator + 1, own_);
+        return found_;
+    }
+
+private:
+    SceneDescription scene_;
+    Choices own_;
+    bool many_emitters_ = false, light_triangles_ = false, diffuse_ = false, refracts_ = false;
+    std::vector<Choices> found_;
+
+    // The axes are decided in order; whether one matters depends on those before it.
+    bool matters(int axis, const Choices &c) const {
+        const int integrator = c[AXIS_integrator];
+        const bool path = integrator == CHOICE_integrator_path,
+                   direct = integrator == CHOICE_integrator_direct_lighting;
+        const bool samples_lights =
+            integrator == CHOICE_integrator_whitted || ((path || direct) && c[AXIS_lighting] != CHOICE_lighting_bsdf);
+        switch (axis) {
+        case AXIS_lighting:
+            return path || direct;
+        case AXIS_mis:
+            return (path || direct) && c[AXIS_lighting] == CHOICE_lighting_mis;
+        case AXIS_hemisphere:
+            return integrator == CHOICE_integrator_ao ||
+                   (diffuse_ && (path || (direct && c[AXIS_lighting] != CHOICE_lighting_emitter)));
+        case AXIS_emitter_choice:
+            return samples_lights && many_emitters_;
+        case AXIS_triangle_choice:
+            return samples_lights && light_triangles_;
+        case AXIS_rr:
+            return path && scene_.strategy.max_depth > scene_.strategy.rr_depth;
+        default:
+            return true;
+        }
+    }
+
+    bool is_unbiased_and_ends(int axis, int choice) const {
+        if (axis == AXIS_lighting && choice == CHOICE_lighting_bsdf)
+            return scene_.point_lights.empty();
+        if (axis == AXIS_rr && choice == CHOICE_rr_off)
+            return scene_.strategy.max_depth != no_limit;
+        return true;
+    }
+
+    bool says_the_same(int axis, int choice) const { // as another choice
+        return axis == AXIS_rr && choice == CHOICE_rr_throughput_eta && !refracts_;
+    }
+
+    void extend(int axis, Choices chosen) {
+        if (axis == AXIS_COUNT)
+            return add(chosen);
+        if (!matters(axis, chosen)) {
+            if (axis == AXIS_mis) // one-sample means nothing elsewhere
+                chosen[axis] = CHOICE_mis_balance;
+            return extend(axis + 1, chosen);
+        }
+        for (int choice = 0; choice < int(axes()[axis].choices.size()); choice++) {
+            if (!is_unbiased_and_ends(axis, choice) || says_the_same(axis, choice))
+                continue;
+            chosen[axis] = choice;
+            extend(axis + 1, chosen);
+        }
+    }
+
+    void add(const Choices &chosen) {
+        scene_.strategy.choices = chosen;
+        try {
+            check_strategy(scene_);
+        } catch (const Error &) {
+            return; // makes no sense
+        }
+        found_.push_back(chosen);
+    }
+};
+
+using Pair = std::array<int, 4>; // axis, choice, axis, choice
+
+std::vector<Pair> pairs_of(const Choices &c) {
+    std::vector<Pair> pairs;
+    for (int a = 0; a < AXIS_COUNT; a++)
+        for (int b = a + 1; b < AXIS_COUNT; b++)
+            pairs.push_back({a, c[a], b, c[b]});
+    return pairs;
+}
+
+std::vector<Choices> covering_set(const std::vector<Choices> &all) {
+    std::set<Pair> open;
+    for (const Choices &c : all)
+        for (const Pair &pair : pairs_of(c))
+            open.insert(pair);
+    const auto gain = [&](const Choices &c) {
+        const auto pairs = pairs_of(c);
+        return std::count_if(pairs.begin(), pairs.end(), [&](const Pair &pair) { return open.contains(pair); });
+    };
+    std::vector<Choices> chosen;
+    while (!open.empty()) {
+        const Choices *best = &all.front();
+        if (!chosen.empty())
+            best = &*std::max_element(all.begin(), all.end(),
+                                      [&](const Choices &a, const Choices &b) { return gain(a) < gain(b); });
+        chosen.push_back(*best);
+        for (const Pair &pair : pairs_of(*best))
+            open.erase(pair);
+    }
+    return chosen;
+}
+
+std::string name_of(const Choices &c, const std::vector<Choices> &set) {
+    std::string name;
+    for (int axis = 0; axis < AXIS_COUNT; axis++) {
+        const bool differs =
+            std::any_of(set.begin(), set.end(), [&](const Choices &other) { return other[axis] != c[axis]; });
+        const bool says_nothing = axis == AXIS_mis && c[AXIS_lighting] != CHOICE_lighting_mis;
+        if (differs && !says_nothing)
+            name +=
+                fmt::format("{}{}={}", name.empty() ? "" : ",", axes()[axis].name, axes()[axis].choices[c[axis]].name);
+    }
+    return name.empty() ? "the scene's" : name;
+}
+
+} // namespace
+
+bool is_same(const Strategy &a, const Strategy &b) {
+    return a.choices == b.choices && a.rr_prob == b.rr_prob && a.rr_depth == b.rr_depth && a.max_depth == b.max_depth &&
+           a.math == b.math && a.lanes == b.lanes && a.specialise == b.specialise;
+}
+
+NamedStrategy named_strategy(const SceneDescription &scene, const std::string &text) {
+    SceneDescription trial = scene;
+    try {
+        override_strategy(trial.strategy, overrides_of(text));
+        check_strategy(trial);
+    } catch (const Error &error) {
+        throw Error(fmt::format("strategy '{}': {}", text, error.what()));
+    }
+    return {text, trial.strategy};
+}
+
+std::vector<NamedStrategy> named_strategies(const SceneDescription &scene, const std::string &text) {
+    std::vector<NamedStrategy> strategies;
+    for (const std::string &part : split(text, ';')) {
+        const NamedStrategy named = named_strategy(scene, part);
+        for (const NamedStrategy &other : strategies)
+            if (is_same(other.strategy, named.strategy))
+                throw Error(fmt::format("strategy '{}' is the same as '{}' on this scene", part, other.name));
+        strategies.push_back(named);
+    }
+    return strategies;
+}
+
+std::vector<NamedStrategy> sensible_strategies(const SceneDescription &scene, size_t most) {
+    std::vector<Choices> all = Candidates(scene).all();
+    if (const auto own = std::find(all.begin(), all.end(), scene.strategy.choices); own != all.end())
+        std::rotate(all.begin(), own, own + 1);
+    if (all.size() > most)
+        all = covering_set(all);
+    std::vector<NamedStrategy> strategies;
+    for (const Choices &c : all) {
+        strategies.push_back({name_of(c, all), scene.strategy});
+        strategies.back().strategy.choices = c;
+    }
+    return strategies;
+}
+
+} // namespace opal

@@ -1,0 +1,108 @@
+#include "strategies/presets.h"
+
+#include "base/error.h"
+#include "base/table.h"
+#include "scene/options.h"
+#include "strategies/combinations.h"
+
+#include <fmt/format.h>
+
+namespace opal {
+
+namespace {
+
+struct PresetRow {
+    std::string name; // of the strategy
+    const char *label;
+    bool path, direct, only_all; // for which integrators; `all` has rows that `course` has not
+};
+
+const std::vector<PresetRow> preset_rows = {
+    {"lighting=bsdf,hemisphere=uniform", "uniform hemisphere", true, true, false},
+    {"lighting=bsdf,hemisphere=cosine", "cosine hemisphere", true, true, false},
+    {"lighting=emitter", "emitter sampling (NEE)", true, true, false},
+    {"lighting=mis,mis=one-sample", "MIS, one sample", false, true, false},
+    {"lighting=mis,mis=balance", "MIS, balance heuristic", true, true, false},
+    {"lighting=mis,mis=power", "MIS, power heuristic", true, true, false},
+    {"lighting=mis,mis=power,emitter-choice=power", "MIS, power; emitters by power", true, true, true},
+    {"lighting=mis,mis=power,sampler=stratified", "MIS, power; stratified", true, true, true},
+    {"lighting=mis,mis=power,sampler=sobol", "MIS, power; Sobol", true, true, true},
+    {"lighting=mis,mis=power,rr=throughput", "MIS, power; roulette by throughput", true, false, true},
+};
+
+class List {
+public:
+    List(const SceneDescription &scene) : scene_(scene) {}
+
+    void add(const std::string &name, const std::string &label) {
+        Candidate candidate{name, label, scene_};
+        candidate.scene.strategy = named_strategy(scene_, name).strategy;
+        for (const Candidate &other : all)
+            if (is_same(other.scene.strategy, candidate.scene.strategy))
+                throw Error(fmt::format("strategy '{}' is the same as '{}' on this scene", name, other.name));
+        all.push_back(std::move(candidate));
+    }
+
+    void add_preset(bool every) {
+        const int integrator = scene_.strategy[AXIS_integrator];
+        const bool path = integrator == CHOICE_integrator_path,
+                   direct = integrator == CHOICE_integrator_direct_lighting;
+        if (!path && !direct)
+            throw Error(fmt::format(
+                "the presets course and all compare ways to find light; integrator {} has none: name strategies, "
+                "e.g. --strategies hemisphere=uniform hemisphere=cosine, or take --integrator path",
+                axes()[AXIS_integrator].choices[size_t(integrator)].name));
+        const bool misses_point_lights = !scene_.point_lights.empty();
+        for (const PresetRow &row : preset_rows)
+            if ((path ? row.path : row.direct) && (every || !row.only_all) &&
+                !(misses_point_lights && row.name.starts_with("lighting=bsdf")))
+                add(row.name, row.label);
+    }
+
+    std::vector<Candidate> all;
+
+private:
+    const SceneDescription &scene_;
+};
+
+void check_one_image(const std::vector<Candidate> &all) {
+    for (const Candidate &c : all)
+        for (const char *what : {"integrator", "max-depth"}) {
+            const Strategy &a = all[0].scene.strategy, &b = c.scene.strategy;
+            const bool same = what[0] == 'i' ? a[AXIS_integrator] == b[AXIS_integrator] : a.max_depth == b.max_depth;
+            if (!same)
+                throw Error(fmt::format(
+                    "strategies '{}' and '{}' make no sense together: with another {} they estimate different images",
+                    all[0].name, c.name, what));
+        }
+}
+
+} // namespace
+
+std::vector<Candidate> parse_strategies(const SceneDescription &scene, const std::vector<std::string> &words,
+                                        const std::vector<std::string> &math) {
+    List list(scene);
+    for (const std::string &word : words.empty() ? std::vector<std::string>{"course"} : words)
+        for (const std::string &part : split(word, ';'))
+            if (part == "course" || part == "all")
+                list.add_preset(part == "all");
+            else if (part.find('=') == std::string::npos)
+                throw Error(fmt::format("--strategies: '{}' is neither a preset (course, all) nor a list "
+                                        "axis=value,...; axes: integrator, {}",
+                                        part, joined(names_of(options()))));
+            else
+                list.add(part, part);
+    if (!math.empty()) {
+        List crossed(scene);
+        for (const Candidate &c : list.all)
+            for (const std::string &mode : math)
+                crossed.add(c.name + ",math=" + mode, c.label + "; " + mode + " math");
+        list.all = std::move(crossed.all);
+    }
+    if (list.all.empty())
+        throw Error("no strategy is left to compare");
+    check_one_image(list.all);
+    return std::move(list.all);
+}
+
+} // namespace opal
