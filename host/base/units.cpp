@@ -2,6 +2,8 @@
 
 #include "base/error.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdlib>
 
@@ -40,6 +42,15 @@ double parse_fraction(const std::string &text) {
     if (!(fraction > 0 && fraction < 1))
         throw Error("'" + text + "' is no relative error above 0 and below 1; possible: 1%, 0.01");
     return fraction;
+}
+
+std::string bytes_text(unsigned long long bytes) {
+    static const char *const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
+    double value = static_cast<double>(bytes);
+    int unit = 0;
+    for (; value >= 1024 && unit < 4; ++unit)
+        value /= 1024;
+    return unit == 0 ? fmt::format("{} bytes", bytes) : fmt::format("{:.1f} {}", value, units[unit]);
 }
 
 } // namespace opal

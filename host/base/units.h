@@ -1,4 +1,4 @@
-// Amounts as the command line takes them. Each throws Error that quotes what it read and says what is possible.
+// Amounts as text. Parsing throws an Error that quotes the text and says what is possible.
 #pragma once
 
 #include <string>
@@ -7,5 +7,7 @@ namespace opal {
 
 double parse_seconds(const std::string &text);  // "30", "30s", "500ms", "2min", "1h"; above 0
 double parse_fraction(const std::string &text); // "1%", "0.01"; above 0, below 1
+
+std::string bytes_text(unsigned long long bytes); // "512 bytes", "1.5 GiB"
 
 } // namespace opal

@@ -1,6 +1,7 @@
 #include "bench/rays.h"
 
 #include "bvh/box.h"
+#include "device/program.h"
 #include "device/scene_buffers.h"
 
 #include <algorithm>
@@ -51,16 +52,25 @@ std::vector<std::array<float, 9>> triangles_of(const FlatScene &scene) {
     return triangles;
 }
 
+struct RayBench::OnDevice {
+    cl::Program program, counting;
+    std::vector<cl::Buffer> scene;
+};
+
 RayBench::RayBench(const Device &device, const FlatScene &scene, const BuildOptions &build, const Sources &sources)
-    : device_(device), scene_(scene), build_(build), sources_(sources),
-      program_(build_program(device, program_text(scene.features, with_kernels(build, false), sources), build,
-                             &compile_seconds_)),
-      buffers_(upload_scene(device, scene)) {}
+    : device_(device), scene_(scene), build_(build), sources_(sources), on_device_(std::make_unique<OnDevice>()) {
+    on_device_->program = build_program(device, program_text(scene.features, with_kernels(build, false), sources),
+                                        build, &compile_seconds_);
+    on_device_->scene = upload_scene(device, scene);
+}
+
+RayBench::~RayBench() = default;
 
 cl::Program &RayBench::counting_program() {
-    if (!counting_())
-        counting_ = build_program(device_, program_text(scene_.features, with_kernels(build_, true), sources_), build_);
-    return counting_;
+    if (!on_device_->counting())
+        on_device_->counting =
+            build_program(device_, program_text(scene_.features, with_kernels(build_, true), sources_), build_);
+    return on_device_->counting;
 }
 
 RaySet RayBench::generate(int kind, size_t count, unsigned seed) {
@@ -75,10 +85,10 @@ RaySet RayBench::generate(int kind, size_t count, unsigned seed) {
     const Box box = bounds_of(scene_);
     const cl::Buffer buffer = make_zeros<float>(device_, TRACE_RAY_PLANES * stride, "the rays");
     with_device(device_.info, [&] {
-        device_.queue.enqueueWriteBuffer(buffers_[0], CL_TRUE, 0, sizeof settings, &settings);
-        cl::Kernel kernel(program_, "generate");
+        device_.handles->queue.enqueueWriteBuffer(on_device_->scene[0], CL_TRUE, 0, sizeof settings, &settings);
+        cl::Kernel kernel(on_device_->program, "generate");
         cl_uint place = 0;
-        for (const cl::Buffer &table : buffers_)
+        for (const cl::Buffer &table : on_device_->scene)
             kernel.setArg(place++, table);
         kernel.setArg(place++, cl_uint(kind));
         for (size_t axis = 0; axis < 3; axis++)
@@ -89,10 +99,10 @@ RaySet RayBench::generate(int kind, size_t count, unsigned seed) {
         kernel.setArg(place + 1, cl_uint(stride));
         for (size_t first = 0; first < stride; first += items_a_launch * size_t(build_.lanes)) {
             kernel.setArg(place, cl_uint(first));
-            device_.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items_a_launch),
-                                               cl::NDRange(group_size(device_.info)));
+            device_.handles->queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items_a_launch),
+                                                        cl::NDRange(group_size(device_.info)));
         }
-        return device_.queue.finish();
+        return device_.handles->queue.finish();
     });
     const std::vector<float> planes = read_buffer<float>(device_, buffer, TRACE_RAY_PLANES * stride);
     RaySet set{kind, {}};
@@ -119,7 +129,7 @@ RayBench::Seconds RayBench::trace(cl::Program &program, Batch &batch) {
     return with_device(device_.info, [&] {
         cl::Kernel kernel(program, batch.kernel);
         cl_uint place = 0;
-        for (const cl::Buffer &table : buffers_)
+        for (const cl::Buffer &table : on_device_->scene)
             kernel.setArg(place++, table);
         for (const cl::Buffer *buffer : {&batch.rays, &batch.hits, &batch.tests})
             kernel.setArg(place++, *buffer);
@@ -127,8 +137,8 @@ RayBench::Seconds RayBench::trace(cl::Program &program, Batch &batch) {
             kernel.setArg(place++, cl_uint(value));
         cl::Event event;
         const std::clock_t before = std::clock();
-        device_.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(batch.items),
-                                           cl::NDRange(group_size(device_.info)), nullptr, &event);
+        device_.handles->queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(batch.items),
+                                                    cl::NDRange(group_size(device_.info)), nullptr, &event);
         event.wait();
         return Seconds{1e-9 * double(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
                                      event.getProfilingInfo<CL_PROFILING_COMMAND_START>()),
@@ -155,10 +165,10 @@ RayTimes RayBench::time(const RaySet &set, int runs) {
     batch.hits = make_zeros<float>(device_, TRACE_HIT_PLANES * batch.stride, "the hits");
     batch.tests = make_zeros<cl_uint>(device_, tests_kinds * batch.items, "the counts of tests");
 
-    trace(program_, batch);
+    trace(on_device_->program, batch);
     std::vector<double> rates, cpu_rates;
     for (int run = 0; run < runs; run++) {
-        const Seconds seconds = trace(program_, batch);
+        const Seconds seconds = trace(on_device_->program, batch);
         rates.push_back(1e-6 * double(count) / seconds.device);
         cpu_rates.push_back(1e-6 * double(count) / seconds.cpu);
     }

@@ -2,12 +2,18 @@
 // traces them with the traversal that renders.
 #pragma once
 
-#include "device/buffers.h"
-#include "device/program.h"
+#include "device/context.h"
+#include "device/sources.h"
+#include "flatten/flat_scene.h"
 #include "kernels/rays_list.h"
 
 #include <array>
+#include <memory>
 #include <vector>
+
+namespace cl {
+class Program;
+}
 
 namespace opal {
 
@@ -40,6 +46,7 @@ class RayBench {
 public:
     // The scene's integrator and emitters must be those of path tracing, so that shadow rays find the lights.
     RayBench(const Device &device, const FlatScene &scene, const BuildOptions &build, const Sources &sources);
+    ~RayBench();
 
     // About `count` rays are tried, a pixel each; those that start nowhere are left out.
     RaySet generate(int kind, size_t count, unsigned seed);
@@ -50,6 +57,7 @@ public:
     double compile_seconds() const { return compile_seconds_; }
 
 private:
+    struct OnDevice; // the programs and the scene's buffers
     struct Batch;
     struct Seconds {
         double device, cpu;
@@ -62,8 +70,7 @@ private:
     BuildOptions build_;
     const Sources &sources_;
     double compile_seconds_ = 0;
-    cl::Program program_, counting_;
-    std::vector<cl::Buffer> buffers_;
+    std::unique_ptr<OnDevice> on_device_;
 };
 
 // Triangle i of FlatScene::triangles: its corners, in flattened units.

@@ -5,13 +5,15 @@
 
 namespace opal {
 
-RunCommand setup_probe_platform(CLI::App &app) {
+Command probe_platform_command() {
     auto library = std::make_shared<std::string>();
-    app.add_option("library", *library, "The driver's library");
-    return [library] {
-        print_probe(*library);
-        return 0;
-    };
+    return {.name = "probe-platform",
+            .help = "",
+            .options = {{.flags = "library", .target = library.get(), .help = "The driver's library"}},
+            .run = [library] {
+                print_probe(*library);
+                return 0;
+            }};
 }
 
 } // namespace opal

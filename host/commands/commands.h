@@ -1,27 +1,25 @@
-// The commands of `opal`. Each adds its options to its own sub-command and returns what runs it.
+// The commands of `opal`: one function a file of this folder, named after it.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
-#include <functional>
+#include "commands/command.h"
 
 namespace opal {
 
-using RunCommand = std::function<int()>; // the process's exit code; throws Error
+Command bench_command();
+Command compare_command();
+Command devices_command();
+Command extremes_command();
+Command inspect_command();
+Command probe_platform_command(); // hidden, in ask_driver.cpp; see device/ask_driver.h
+Command render_command();
+Command selftest_command();
+Command selftest_group_command(); // hidden, in selftest.cpp
+Command sweep_command();
+Command test_command();
+Command verify_command();
+Command warp_command();
 
-// One function a file of this folder, named after it. Called for every command before the command line is parsed.
-RunCommand setup_bench(CLI::App &app);
-RunCommand setup_compare(CLI::App &app);
-RunCommand setup_devices(CLI::App &app);
-RunCommand setup_extremes(CLI::App &app);
-RunCommand setup_inspect(CLI::App &app);
-RunCommand setup_probe_platform(CLI::App &app); // hidden; see device/ask_driver.h
-RunCommand setup_render(CLI::App &app);
-RunCommand setup_sweep(CLI::App &app);
-RunCommand setup_selftest(CLI::App &app);
-RunCommand setup_selftest_group(CLI::App &app); // hidden; in selftest.cpp
-RunCommand setup_test(CLI::App &app);
-RunCommand setup_verify(CLI::App &app);
-RunCommand setup_warp(CLI::App &app);
+// All of them, in the order of the help.
+std::vector<Command> all_commands();
 
 } // namespace opal

@@ -7,6 +7,7 @@
 #include "image/metrics.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <limits>
 #include <optional>
@@ -117,27 +118,24 @@ nlohmann::json json_of(const stats::TileTest &t, double significance) {
     return j;
 }
 
-void tell(const Metrics &m) {
+std::string text_of(const Metrics &m) {
     const auto line = [](const char *name, double value, const std::string &what) {
-        print("{:<8}{:<13.6g}{}\n", name, value, what);
+        return fmt::format("{:<8}{:<13.6g}{}\n", name, value, what);
     };
-    line("MSE", m.mse, "mean of d^2, d = A - B, over pixels and R, G, B");
-    line("RMSE", m.rmse, "its root");
-    line("relMSE", m.rel_mse,
-         fmt::format("mean of d^2 / (B^2 + {:.3g}), the floor being (1 % of B's mean)^2", m.rel_mse_floor));
-    line("MAE", m.mae, "mean of |d|");
-    line("SMAPE", m.smape, "mean of |d| / ((|A| + |B|) / 2), from 0 to 2");
-    line("PSNR", m.psnr, "dB, of the images as the PNGs show them (sRGB curve, clamped to 0 to 1), peak 1");
-    line("mean d", m.mean_difference, "");
-    line("max |d|", m.max_difference, fmt::format("at pixel ({}, {})", m.max_x, m.max_y));
-    if (m.invalid)
-        warn(fmt::format("{} pixels are NaN or infinite in either image and are left out of the figures", m.invalid));
+    return line("MSE", m.mse, "mean of d^2, d = A - B, over pixels and R, G, B") + line("RMSE", m.rmse, "its root") +
+           line("relMSE", m.rel_mse,
+                fmt::format("mean of d^2 / (B^2 + {:.3g}), the floor being (1 % of B's mean)^2", m.rel_mse_floor)) +
+           line("MAE", m.mae, "mean of |d|") + line("SMAPE", m.smape, "mean of |d| / ((|A| + |B|) / 2), from 0 to 2") +
+           line("PSNR", m.psnr, "dB, of the images as the PNGs show them (sRGB curve, clamped to 0 to 1), peak 1") +
+           line("mean d", m.mean_difference, "") +
+           line("max |d|", m.max_difference, fmt::format("at pixel ({}, {})", m.max_x, m.max_y));
 }
 
-void tell(const stats::TileTest &t, double significance) {
-    print("Welch, tiles of {0} x {0} pixels and the whole image, Sidak over all: {1}\n{2} at the level {3:g}\n", t.size,
-          describe(t), t.rejected(significance) ? "The means differ" : "No difference of the means was found",
-          significance);
+std::string text_of(const stats::TileTest &t, double significance) {
+    return fmt::format(
+        "Welch, tiles of {0} x {0} pixels and the whole image, Sidak over all: {1}\n{2} at the level {3:g}\n", t.size,
+        describe(t), t.rejected(significance) ? "The means differ" : "No difference of the means was found",
+        significance);
 }
 
 int run(const Options &o) {
@@ -159,8 +157,12 @@ int run(const Options &o) {
     const Metrics metrics = compare_images(image, reference);
     nlohmann::json report = json_of(metrics);
     report.update({{"image", o.image}, {"reference", o.reference}});
-    if (!o.quiet)
-        tell(metrics);
+    if (!o.quiet) {
+        print_text(text_of(metrics));
+        if (metrics.invalid)
+            warn(fmt::format("{} pixels are NaN or infinite in either image and are left out of the figures",
+                             metrics.invalid));
+    }
     std::string untested = why_untested(o.image, image);
     if (untested.empty())
         untested = why_untested(o.reference, reference);
@@ -169,7 +171,7 @@ int run(const Options &o) {
         test = stats::tile_test(estimated(image), estimated(reference));
         report["test"] = json_of(*test, o.significance);
         if (!o.quiet)
-            tell(*test, o.significance);
+            print_text(text_of(*test, o.significance));
     } else {
         report["untested"] = untested;
         if (!o.quiet)
@@ -184,19 +186,24 @@ int run(const Options &o) {
 
 } // namespace
 
-RunCommand setup_compare(CLI::App &app) {
+Command compare_command() {
     auto o = std::make_shared<Options>();
-    app.add_option("A.exr", o->image, "The image")->required()->type_name("");
-    app.add_option("B.exr", o->reference, "The reference")->required()->type_name("");
-    app.add_option("-o,--output", o->out,
-                   "EXR for the difference A - B (and z.R, z.G, z.B of its tiles); a PNG goes beside it, "
-                   "red where A is brighter, blue where B is");
-    app.add_option("--json", o->json, "File for the figures");
-    app.add_option("--significance", o->significance, "Level of the test that both have one mean")
-        ->check(CLI::Range(1e-12, 0.5))
-        ->capture_default_str();
-    app.add_flag("--quiet", o->quiet, "Print nothing but warnings and errors");
-    return [o] { return run(*o); };
+    return {
+        .name = "compare",
+        .help = "Hold an image against another: errors, and whether both can have one mean",
+        .options = {{.flags = "A.exr", .target = &o->image, .help = "The image", .type = "", .required = true},
+                    {.flags = "B.exr", .target = &o->reference, .help = "The reference", .type = "", .required = true},
+                    {.flags = "-o,--output",
+                     .target = &o->out,
+                     .help = "EXR for the difference A - B (and z.R, z.G, z.B of its tiles); a PNG goes beside it, "
+                             "red where A is brighter, blue where B is"},
+                    {.flags = "--json", .target = &o->json, .help = "File for the figures"},
+                    {.flags = "--significance",
+                     .target = &o->significance,
+                     .help = "Level of the test that both have one mean",
+                     .check = Range{1e-12, 0.5}},
+                    {.flags = "--quiet", .target = &o->quiet, .help = "Print nothing but warnings and errors"}},
+        .run = [o] { return run(*o); }};
 }
 
 } // namespace opal

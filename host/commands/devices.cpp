@@ -1,10 +1,10 @@
 #include "base/log.h"
+#include "base/units.h"
 #include "commands/commands.h"
-#include "device/buffers.h"
 #include "device/info_json.h"
-#include "device/program.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <memory>
 
@@ -72,13 +72,19 @@ int run_devices(const DevicesOptions &options) {
 
 } // namespace
 
-RunCommand setup_devices(CLI::App &app) {
-    auto options = std::make_shared<DevicesOptions>();
-    app.add_flag("--json", options->json, "Print JSON");
-    app.add_option("--device", options->device, "What `render` would take: an index, cpu, gpu, or part of a name");
-    app.add_option("--time-limit", options->time_limit, "Seconds that a driver has to answer")
-        ->check(CLI::Range(0.001, 3600.0));
-    return [options] { return run_devices(*options); };
+Command devices_command() {
+    auto o = std::make_shared<DevicesOptions>();
+    return {.name = "devices",
+            .help = "List every OpenCL platform and device, and which one `render` takes",
+            .options = {{.flags = "--json", .target = &o->json, .help = "Print JSON"},
+                        {.flags = "--device",
+                         .target = &o->device,
+                         .help = "What `render` would take: an index, cpu, gpu, or part of a name"},
+                        {.flags = "--time-limit",
+                         .target = &o->time_limit,
+                         .help = "Seconds that a driver has to answer",
+                         .check = Range{0.001, 3600.0}}},
+            .run = [o] { return run_devices(*o); }};
 }
 
 } // namespace opal

@@ -8,6 +8,7 @@
 #include "extremes/report.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace opal {
 
@@ -18,7 +19,7 @@ struct ExtremesOptions {
     std::vector<std::string> names;
     extremes::How how;
     bool quick = false, list = false;
-    CLI::Option *side = nullptr, *spp = nullptr;
+    std::optional<unsigned> side, spp; // where the command line names them
 };
 
 std::vector<const extremes::Row *> chosen(const std::vector<std::string> &names) {
@@ -41,17 +42,17 @@ int run(ExtremesOptions o) {
     for (const std::string &file : {o.json, o.plot})
         if (!file.empty())
             check_writable(file);
-    if (o.quick) {
-        o.how.side = o.side->count() ? o.how.side : 32;
-        o.how.spp = o.spp->count() ? o.how.spp : 32;
-    }
+    if (o.quick)
+        o.how.side = o.how.spp = 32;
+    o.how.side = o.side.value_or(o.how.side);
+    o.how.spp = o.spp.value_or(o.how.spp);
     const DevicePick pick = pick_device(o.device, list_devices());
     lanes_for(pick.info, 0, MathMode::double_precision); // refuses a device without doubles before anything is rendered
     const Device device = open_device(pick.info);
-    const Sources sources = o.cl_dir.empty() ? Sources::embedded() : Sources::from_folder(o.cl_dir);
+    const Sources sources = load_sources(o.cl_dir);
     o.how.sources = &sources;
-    info(fmt::format("device  {} (driver {}; {}), {} x {} pixels, {} samples each, seed {}", pick.info.name,
-                     pick.info.driver, pick.reason, o.how.side, o.how.side, o.how.spp, o.how.seed));
+    info(fmt::format("device  {}, {} x {} pixels, {} samples each, seed {}", text_of(pick), o.how.side, o.how.side,
+                     o.how.spp, o.how.seed));
 
     std::vector<extremes::Sweep> sweeps;
     nlohmann::json report = {{"device", pick.info.name},
@@ -77,23 +78,32 @@ int run(ExtremesOptions o) {
 
 } // namespace
 
-RunCommand setup_extremes(CLI::App &app) {
+Command extremes_command() {
     auto o = std::make_shared<ExtremesOptions>();
-    app.add_option("--row", o->names, "What to stretch (--list); all of them where none is named");
-    app.add_flag("--list", o->list, "List what can be stretched");
-    app.add_flag("--quick", o->quick, "Every third value, small pictures");
-    o->side = app.add_option("--side", o->how.side, "Pixels along each side")
-                  ->check(CLI::Range(1, 4096))
-                  ->capture_default_str();
-    o->spp = app.add_option("--spp", o->how.spp, "Samples of each pixel")
-                 ->check(CLI::Range(1, 1 << 24))
-                 ->capture_default_str();
-    app.add_option("--seed", o->how.seed, "Of the random numbers")->capture_default_str();
-    app.add_option("--json", o->json, "All figures")->type_name("FILE");
-    app.add_option("--plot", o->plot, "SVG of error against parameter")->type_name("FILE");
-    app.add_option("--cl-dir", o->cl_dir, "Read the kernels from this copy of cl/")->type_name("FOLDER");
-    add_device_option(app, o->device);
-    return [o] { return run(*o); };
+    return {
+        .name = "extremes",
+        .help = "Stretch scenes over many decades and hold single against double precision",
+        .options = {{.flags = "--row",
+                     .target = &o->names,
+                     .help = "What to stretch (--list); all of them where none is named"},
+                    {.flags = "--list", .target = &o->list, .help = "List what can be stretched"},
+                    {.flags = "--quick", .target = &o->quick, .help = "Every third value, small pictures"},
+                    {.flags = "--side",
+                     .target = &o->side,
+                     .help = "Pixels along each side",
+                     .check = Range{1, 4096},
+                     .default_text = std::to_string(o->how.side)},
+                    {.flags = "--spp",
+                     .target = &o->spp,
+                     .help = "Samples of each pixel",
+                     .check = Range{1, 1 << 24},
+                     .default_text = std::to_string(o->how.spp)},
+                    {.flags = "--seed", .target = &o->how.seed, .help = "Of the random numbers"},
+                    {.flags = "--json", .target = &o->json, .help = "All figures", .type = "FILE"},
+                    {.flags = "--plot", .target = &o->plot, .help = "SVG of error against parameter", .type = "FILE"},
+                    cl_dir_row(o->cl_dir),
+                    device_row(o->device)},
+        .run = [o] { return run(*o); }};
 }
 
 } // namespace opal

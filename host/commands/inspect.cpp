@@ -1,8 +1,8 @@
 #include "base/log.h"
+#include "base/units.h"
 #include "bench/renders.h"
 #include "commands/commands.h"
 #include "commands/options.h"
-#include "device/buffers.h"
 #include "flatten/precision_warnings.h"
 #include "scene/options.h"
 
@@ -138,12 +138,9 @@ void print_features(const Features &features) {
 
 // What each feature that the scene does not need would cost in the kernel.
 void print_savings(const InspectOptions &options, const SceneDescription &scene) {
-    BuildOptions build;
-    const DevicePick pick = pick_device(options.device, list_devices());
-    build.lanes = lanes_for(pick.info, scene.strategy.lanes, scene.strategy.math);
-    build.math = scene.strategy.math;
+    const auto [pick, build] = choose_kernel(options.device, scene);
     const FlatScene flat = flatten(scene, build.lanes);
-    const Sources sources = load_sources(options.scene);
+    const Sources sources = load_sources(options.scene.cl_dir);
     RenderBench bench(open_device(pick.info), flat, build, sources, 0.5, 5);
     print("\nsaved by what is left out ({}, {} lanes; time with it over time without, 5 rounds)\n", pick.info.name,
           build.lanes);
@@ -168,7 +165,7 @@ int run_inspect(const InspectOptions &options) {
         BuildOptions build;
         build.lanes = lanes;
         build.math = scene.strategy.math;
-        print_text(program_text(flat.features, build, load_sources(options.scene)));
+        print_text(program_text(flat.features, build, load_sources(options.scene.cl_dir)));
         return 0;
     }
     print_scene(scene, flat);
@@ -184,13 +181,18 @@ int run_inspect(const InspectOptions &options) {
 
 } // namespace
 
-RunCommand setup_inspect(CLI::App &app) {
-    auto options = std::make_shared<InspectOptions>();
-    add_scene_options(app, options->scene);
-    app.add_flag("--cl", options->cl, "Print the text of the kernel's program instead");
-    app.add_flag("--bench", options->bench, "Render with each feature that is left out, and without: what it saved");
-    add_device_option(app, options->device);
-    return [options] { return run_inspect(*options); };
+Command inspect_command() {
+    auto o = std::make_shared<InspectOptions>();
+    return {.name = "inspect",
+            .help = "Show what a scene holds, and what its kernel will be compiled with and why",
+            .options =
+                append(scene_rows(o->scene),
+                       {{.flags = "--cl", .target = &o->cl, .help = "Print the text of the kernel's program instead"},
+                        {.flags = "--bench",
+                         .target = &o->bench,
+                         .help = "Render with each feature that is left out, and without: what it saved"},
+                        device_row(o->device)}),
+            .run = [o] { return run_inspect(*o); }};
 }
 
 } // namespace opal

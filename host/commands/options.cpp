@@ -15,34 +15,49 @@ std::string integrator_help() {
                        fmt::join(names_of(integrator_types()), ", "));
 }
 
-void add_override(CLI::App &app, SceneOptions &options, const std::string &name, const std::string &type,
-                  const std::string &help) {
-    app.add_option_function<std::string>(
-           "--" + name, [&options, name](const std::string &value) { options.overrides[name] = value; }, help)
-        ->type_name(type)
-        ->group("Strategy");
+OptionRow override_row(SceneOptions &options, const std::string &name, const std::string &type,
+                       const std::string &help) {
+    return {.flags = "--" + name,
+            .target = MapEntry{&options.overrides, name},
+            .help = help,
+            .type = type,
+            .group = "Strategy"};
 }
 
 } // namespace
 
-void add_scene_options(CLI::App &app, SceneOptions &options) {
-    app.add_option("SCENE.xml", options.file, "The scene, in Nori's format")->required()->type_name("");
-    add_strategy_options(app, options);
+std::vector<OptionRow> scene_rows(SceneOptions &options) {
+    return append({{.flags = "SCENE.xml",
+                    .target = &options.file,
+                    .help = "The scene, in Nori's format",
+                    .type = "",
+                    .required = true}},
+                  strategy_rows(options));
 }
 
-void add_strategy_options(CLI::App &app, SceneOptions &options) {
-    add_override(app, options, "integrator", "NAME", integrator_help());
+std::vector<OptionRow> strategy_rows(SceneOptions &options) {
+    std::vector<OptionRow> rows = {override_row(options, "integrator", "NAME", integrator_help())};
     for (const StrategyOption &option : strategy_options())
-        add_override(app, options, option.name, option.values, option.help);
-    app.add_flag("--lenient", options.load.lenient, "An unknown property of the scene warns instead of failing");
-    app.add_option("--cl-dir", options.cl_dir, "Read the kernels from this copy of cl/ [those in the binary]")
-        ->type_name("FOLDER");
+        rows.push_back(override_row(options, option.name, option.values, option.help));
+    rows.push_back({.flags = "--lenient",
+                    .target = &options.load.lenient,
+                    .help = "An unknown property of the scene warns instead of failing"});
+    rows.push_back({.flags = "--cl-dir",
+                    .target = &options.cl_dir,
+                    .help = "Read the kernels from this copy of cl/ [those in the binary]",
+                    .type = "FOLDER"});
+    return rows;
 }
 
-void add_device_option(CLI::App &app, std::string &device) {
-    app.add_option("--device", device,
-                   "An index of `opal devices`, cpu, gpu, or part of a name [the first GPU, else the CPU]")
-        ->type_name("DEVICE");
+OptionRow cl_dir_row(std::string &cl_dir) {
+    return {.flags = "--cl-dir", .target = &cl_dir, .help = "Read the kernels from this copy of cl/", .type = "FOLDER"};
+}
+
+OptionRow device_row(std::string &device) {
+    return {.flags = "--device",
+            .target = &device,
+            .help = "An index of `opal devices`, cpu, gpu, or part of a name [the first GPU, else the CPU]",
+            .type = "DEVICE"};
 }
 
 SceneDescription load_scene(const SceneOptions &options) {
@@ -52,8 +67,26 @@ SceneDescription load_scene(const SceneOptions &options) {
     return scene;
 }
 
-Sources load_sources(const SceneOptions &options) {
-    return options.cl_dir.empty() ? Sources::embedded() : Sources::from_folder(options.cl_dir);
+KernelChoice choose_kernel(const std::string &device, const SceneDescription &scene) {
+    KernelChoice choice{pick_device(device, list_devices()), {}};
+    choice.build.lanes = lanes_for(choice.pick.info, scene.strategy.lanes, scene.strategy.math);
+    choice.build.math = scene.strategy.math;
+    return choice;
+}
+
+Sources load_sources(const std::string &cl_dir) {
+    return cl_dir.empty() ? Sources::embedded() : Sources::from_folder(cl_dir);
+}
+
+void set_size(Camera &camera, unsigned width, unsigned height) {
+    const auto keep_aspect = [](unsigned given, int its, int other) {
+        return std::max(1, int(std::lround(double(given) * other / its)));
+    };
+    const Camera old = camera;
+    if (width || height) {
+        camera.width = width ? int(width) : keep_aspect(height, old.height, old.width);
+        camera.height = height ? int(height) : keep_aspect(width, old.width, old.height);
+    }
 }
 
 } // namespace opal

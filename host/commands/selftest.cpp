@@ -10,8 +10,11 @@
 #include "image/image.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <deque>
+#include <set>
 #include <sstream>
 
 namespace opal {
@@ -101,7 +104,43 @@ void run_jobs(std::vector<Job> &jobs, const std::vector<Variant> &variants, cons
         finish_first();
 }
 
-const Finding *find_check(const std::vector<Job> &jobs, size_t variant, const std::string &check) {
+struct SelftestReport {
+    const DeviceInfo &device;
+    const std::vector<Variant> &variants;
+    const std::vector<Job> &jobs;
+    double seconds;
+
+    bool passed() const { return count_failed() + count_problems() == 0; }
+    std::string text() const; // a line a check, a column a variant; "!" marks what failed
+    nlohmann::json json() const;
+
+private:
+    size_t count_checks() const;
+    size_t count_failed() const;
+    size_t count_problems() const; // jobs that did not end well
+    const Finding *find_check(size_t variant, const std::string &check) const;
+    std::string row(const Finding &check) const;
+};
+
+size_t SelftestReport::count_checks() const {
+    size_t count = 0;
+    for (const Job &job : jobs)
+        count += job.findings.size();
+    return count;
+}
+
+size_t SelftestReport::count_failed() const {
+    size_t count = 0;
+    for (const Job &job : jobs)
+        count += size_t(std::ranges::count(job.findings, false, &Finding::passed));
+    return count;
+}
+
+size_t SelftestReport::count_problems() const {
+    return size_t(std::ranges::count_if(jobs, [](const Job &job) { return !job.problem.empty(); }));
+}
+
+const Finding *SelftestReport::find_check(size_t variant, const std::string &check) const {
     for (const Job &job : jobs)
         if (job.variant == variant)
             for (const Finding &finding : job.findings)
@@ -110,29 +149,54 @@ const Finding *find_check(const std::vector<Job> &jobs, size_t variant, const st
     return nullptr;
 }
 
-// A line a check, a column a variant; "!" marks what failed.
-void print_table(const std::vector<Job> &jobs, const std::vector<Variant> &variants) {
-    print("{:<52}{:>10}", "check", "limit");
+std::string SelftestReport::row(const Finding &check) const {
+    std::string line = fmt::format("{:<52}{:>10}", check.check, fmt::format("{:.3g}", check.limit));
+    for (size_t v = 0; v < variants.size(); v++) {
+        const Finding *finding = find_check(v, check.check);
+        line += fmt::format("{:>12}{}", finding ? fmt::format("{:.3g}", finding->figure) : "-",
+                            finding && !finding->passed ? "!" : " ");
+    }
+    return line + "\n";
+}
+
+std::string SelftestReport::text() const {
+    std::string text = fmt::format("{:<52}{:>10}", "check", "limit");
     for (const Variant &variant : variants)
-        print("{:>13}", variant.name());
-    print("\n");
-    std::vector<std::string> done;
-    for (const Job &from : jobs)
-        for (const Finding &row : from.findings) {
-            if (std::find(done.begin(), done.end(), row.check) != done.end())
-                continue;
-            done.push_back(row.check);
-            std::string line, limit = fmt::format("{:.3g}", row.limit);
-            for (size_t v = 0; v < variants.size(); v++) {
-                const Finding *finding = find_check(jobs, v, row.check);
-                line += fmt::format("{:>12}{}", finding ? fmt::format("{:.3g}", finding->figure) : "-",
-                                    finding && !finding->passed ? "!" : " ");
-            }
-            print("{:<52}{:>10}{}\n", row.check, limit, line);
-        }
+        text += fmt::format("{:>13}", variant.name());
+    text += "\n";
+    std::set<std::string> done;
+    for (const Job &job : jobs)
+        for (const Finding &finding : job.findings)
+            if (done.insert(finding.check).second)
+                text += row(finding);
     for (const Job &job : jobs)
         if (!job.problem.empty())
-            print("{} at {}: {}\n", job.group->name, variants[job.variant].name(), job.problem);
+            text += fmt::format("{} at {}: {}\n", job.group->name, variants[job.variant].name(), job.problem);
+    const size_t checks = count_checks(), problems = count_problems();
+    return text + fmt::format("{}: {} of {} checks passed{}, {:.0f} s\n", passed() ? "passed" : "FAILED",
+                              checks - count_failed(), checks,
+                              problems ? fmt::format(", {} groups did not end well", problems) : "", seconds);
+}
+
+nlohmann::json SelftestReport::json() const {
+    nlohmann::json report = {{"device", device}, {"checks", nlohmann::json::array()}};
+    for (const Job &job : jobs) {
+        const Variant &variant = variants[job.variant];
+        for (const Finding &f : job.findings)
+            report["checks"].push_back({{"check", f.check},
+                                        {"lanes", variant.lanes},
+                                        {"math", variant.math},
+                                        {"figure", f.figure},
+                                        {"limit", f.limit},
+                                        {"passed", f.passed}});
+        if (!job.problem.empty())
+            report["checks"].push_back({{"check", job.group->name},
+                                        {"lanes", variant.lanes},
+                                        {"math", variant.math},
+                                        {"passed", false},
+                                        {"problem", job.problem}});
+    }
+    return report;
 }
 
 int run(const Options &o) {
@@ -143,7 +207,7 @@ int run(const Options &o) {
     if (!o.json.empty())
         check_writable(o.json);
     const DevicePick pick = pick_device(o.device, list_devices());
-    info(fmt::format("device  {} (driver {}; {})", pick.info.name, pick.info.driver, pick.reason));
+    info(fmt::format("device  {}", text_of(pick)));
     const std::vector<Variant> variants = variants_of(pick.info);
     std::vector<Job> jobs;
     for (const CheckGroup &group : check_groups())
@@ -152,35 +216,12 @@ int run(const Options &o) {
                 jobs.push_back({&group, v, {}, {}});
     const auto begun = ChildProcess::Clock::now();
     run_jobs(jobs, variants, pick.info, o);
-    print_table(jobs, variants);
-
-    size_t checks = 0, failed = 0, problems = 0;
-    nlohmann::json report = {{"device", pick.info}, {"checks", nlohmann::json::array()}};
-    for (const Job &job : jobs) {
-        problems += !job.problem.empty();
-        for (const Finding &f : job.findings) {
-            checks++;
-            failed += !f.passed;
-            report["checks"].push_back({{"check", f.check},
-                                        {"lanes", variants[job.variant].lanes},
-                                        {"math", variants[job.variant].math},
-                                        {"figure", f.figure},
-                                        {"limit", f.limit},
-                                        {"passed", f.passed}});
-        }
-        if (!job.problem.empty())
-            report["checks"].push_back({{"check", job.group->name},
-                                        {"lanes", variants[job.variant].lanes},
-                                        {"math", variants[job.variant].math},
-                                        {"passed", false},
-                                        {"problem", job.problem}});
-    }
-    print("{}: {} of {} checks passed{}, {:.0f} s\n", failed + problems ? "FAILED" : "passed", checks - failed, checks,
-          problems ? fmt::format(", {} groups did not end well", problems) : "",
-          std::chrono::duration<double>(ChildProcess::Clock::now() - begun).count());
+    const SelftestReport report{pick.info, variants, jobs,
+                                std::chrono::duration<double>(ChildProcess::Clock::now() - begun).count()};
+    print_text(report.text());
     if (!o.json.empty())
-        write_safely(o.json, dump(report, 2) + "\n");
-    return failed + problems ? 1 : 0;
+        write_safely(o.json, dump(report.json(), 2) + "\n");
+    return report.passed() ? 0 : 1;
 }
 
 // The other side: runs one group and prints its findings.
@@ -190,8 +231,7 @@ int run_group(const std::vector<std::string> &words) {
     const CheckGroup &group = find_row(check_groups(), "group", words[0]);
     try {
         const Device device = open_device(nlohmann::json::parse(words[1]).get<DeviceInfo>());
-        const Sources sources =
-            words.size() < 7 || words[6].empty() ? Sources::embedded() : Sources::from_folder(words[6]);
+        const Sources sources = load_sources(words.size() < 7 ? "" : words[6]);
         SelftestOptions options;
         options.build.lanes = std::stoi(words[2]);
         options.build.math = words[3] == "fast" ? MathMode::fast : MathMode::precise;
@@ -209,27 +249,37 @@ int run_group(const std::vector<std::string> &words) {
 
 } // namespace
 
-RunCommand setup_selftest(CLI::App &app) {
+Command selftest_command() {
     auto o = std::make_shared<Options>();
-    add_device_option(app, o->device);
-    app.add_flag("--quick", o->quick, "Less than a minute (default)");
-    app.add_flag("--full", o->full, "More cases, more samples: minutes");
     std::string groups;
     for (const CheckGroup &group : check_groups())
         groups += fmt::format("\n  {}: {}", group.name, group.help);
-    app.add_option("--group", o->groups, "Only this group of checks; may be repeated" + groups)->type_name("NAME");
-    app.add_option("--time-limit", o->time_limit, "Seconds for each group of checks [120, or 1200 with --full]")
-        ->check(CLI::PositiveNumber);
-    app.add_option("--seed", o->seed, "Of the random numbers")->capture_default_str();
-    app.add_option("--json", o->json, "File for the findings");
-    app.add_option("--cl-dir", o->cl_dir, "Read the kernels from this copy of cl/")->type_name("FOLDER");
-    return [o] { return run(*o); };
+    return {.name = "selftest",
+            .help = "Check that a device and its driver compute right",
+            .options = {device_row(o->device),
+                        {.flags = "--quick", .target = &o->quick, .help = "Less than a minute (default)"},
+                        {.flags = "--full", .target = &o->full, .help = "More cases, more samples: minutes"},
+                        {.flags = "--group",
+                         .target = &o->groups,
+                         .help = "Only this group of checks; may be repeated" + groups,
+                         .type = "NAME"},
+                        {.flags = "--time-limit",
+                         .target = &o->time_limit,
+                         .help = "Seconds for each group of checks [120, or 1200 with --full]",
+                         .check = Positive{}},
+                        {.flags = "--seed", .target = &o->seed, .help = "Of the random numbers"},
+                        {.flags = "--json", .target = &o->json, .help = "File for the findings"},
+                        cl_dir_row(o->cl_dir)},
+            .run = [o] { return run(*o); }};
 }
 
-RunCommand setup_selftest_group(CLI::App &app) {
+Command selftest_group_command() {
     auto words = std::make_shared<std::vector<std::string>>();
-    app.add_option("words", *words, "GROUP DEVICE LANES MATH EFFORT SEED [FOLDER]");
-    return [words] { return run_group(*words); };
+    return {
+        .name = "selftest-group",
+        .help = "",
+        .options = {{.flags = "words", .target = words.get(), .help = "GROUP DEVICE LANES MATH EFFORT SEED [FOLDER]"}},
+        .run = [words] { return run_group(*words); }};
 }
 
 } // namespace opal

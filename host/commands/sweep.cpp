@@ -1,5 +1,6 @@
 // opal sweep: error against time of several strategies on one scene.
 #include "base/command_line.h"
+#include "base/error.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/read_file.h"
@@ -13,6 +14,7 @@
 #include "sweep/run.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <iterator>
@@ -149,8 +151,7 @@ int run_part(Part part, const SweepPlan &plan, const DevicePick &pick, const std
              SweepRecord &record) {
     const Device device = open_device(pick.info);
     if (part == measure_points)
-        info(fmt::format("device  {}: {} (driver {}; {})", pick.info.index, pick.info.name, pick.info.driver,
-                         pick.reason));
+        info(fmt::format("device  {}: {}", pick.info.index, text_of(pick)));
     watch_interrupts();
     try {
         part(plan, device, candidates, record);
@@ -190,12 +191,9 @@ int run(const Options &o) {
     set_quiet(o.quiet);
     check_numbers(o);
     SceneDescription scene = load_scene(o.scene);
-    if (o.width) {
-        scene.camera.height = std::max(1, int(std::lround(double(o.width) * scene.camera.height / scene.camera.width)));
-        scene.camera.width = int(o.width);
-    }
+    set_size(scene.camera, o.width, 0);
     const std::vector<Candidate> strategies = parse_strategies(scene, o.strategies, o.math);
-    const Sources sources = load_sources(o.scene);
+    const Sources sources = load_sources(o.scene.cl_dir);
     SweepPlan plan{.folder = {},
                    .seed = o.seed,
                    .reference_spp = o.reference_spp,
@@ -229,49 +227,69 @@ int run(const Options &o) {
 
 } // namespace
 
-RunCommand setup_sweep(CLI::App &app) {
+Command sweep_command() {
     auto o = std::make_shared<Options>();
-    add_scene_options(app, o->scene);
-    app.remove_option(app.get_option("--math")); // here it takes several
-    app.add_option("--math", o->math, "Cross the strategies with these: precise,fast")
-        ->delimiter(',')
-        ->type_name("MODE,...")
-        ->group("Strategy");
-    app.add_option("--device", o->devices,
-                   "Cross the strategies with these: each an index of `opal devices`, cpu, gpu, or part of a name "
-                   "[the first GPU, else the CPU]")
-        ->delimiter(',')
-        ->type_name("DEVICE,...");
-    app.add_option(
-           "--strategies", o->strategies,
-           "course, all, or lists axis=value,... after the scene; the first is the baseline [course]\n"
-           "  course: hemisphere sampling, light sampling and MIS of both kinds; all: samplers and choices besides")
-        ->type_name("STRATEGY...")
-        ->expected(1, -1);
-    app.add_option("--spp", o->spp, "Samples per pixel of the points")
-        ->delimiter(',')
-        ->type_name("N,...")
-        ->capture_default_str();
-    app.add_option("--replicates", o->replicates, "Renders of each point, with seeds of their own; at least 2")
-        ->capture_default_str();
-    app.add_option("--seed", o->seed, "Of the first replicate's random numbers")->capture_default_str();
-    app.add_option("--reference", o->reference, "EXR to hold the images against [made by the best strategy]")
-        ->type_name("FILE");
-    app.add_option("--reference-spp", o->reference_spp,
-                   "Samples per pixel of the reference that is made [8 times the largest --spp]");
-    app.add_option("--budget", o->budget, "Kernel time for all of it: leaves out the largest --spp until it fits")
-        ->type_name("TIME");
-    app.add_option(
-           "--clock", o->clock,
-           "kernel: seconds of the device's own profile; cpu: of all cores of a CPU device, over their number: steady "
-           "on a machine that others use, too")
-        ->check(CLI::IsMember({"kernel", "cpu"}))
-        ->capture_default_str();
-    app.add_option("--width", o->width, "Pixels; keeps the aspect (default: the scene's)")->check(CLI::Range(1, 65535));
-    app.add_option("-o,--output", o->out, "Folder; a sweep that is there already goes on [SCENE_sweep]")
-        ->type_name("FOLDER");
-    app.add_flag("--quiet", o->quiet, "Print the verdict, warnings and errors only");
-    return [o] { return run(*o); };
+    std::vector<OptionRow> rows = scene_rows(o->scene);
+    std::erase_if(rows, [](const OptionRow &row) { return row.flags == "--math"; }); // here it takes several
+    return {
+        .name = "sweep",
+        .help = "Measure error against time of several strategies on a scene, as one HTML page",
+        .options = append(
+            rows,
+            {{.flags = "--math",
+              .target = &o->math,
+              .help = "Cross the strategies with these: precise,fast",
+              .type = "MODE,...",
+              .group = "Strategy",
+              .comma_separated = true},
+             {.flags = "--device",
+              .target = &o->devices,
+              .help = "Cross the strategies with these: each an index of `opal devices`, cpu, gpu, or part of a name "
+                      "[the first GPU, else the CPU]",
+              .type = "DEVICE,...",
+              .comma_separated = true},
+             {.flags = "--strategies",
+              .target = &o->strategies,
+              .help = "course, all, or lists axis=value,... after the scene; the first is the baseline [course]\n"
+                      "  course: hemisphere sampling, light sampling and MIS of both kinds; all: samplers and choices "
+                      "besides",
+              .type = "STRATEGY...",
+              .many_words = true},
+             {.flags = "--spp",
+              .target = &o->spp,
+              .help = "Samples per pixel of the points",
+              .type = "N,...",
+              .comma_separated = true},
+             {.flags = "--replicates",
+              .target = &o->replicates,
+              .help = "Renders of each point, with seeds of their own; at least 2"},
+             {.flags = "--seed", .target = &o->seed, .help = "Of the first replicate's random numbers"},
+             {.flags = "--reference",
+              .target = &o->reference,
+              .help = "EXR to hold the images against [made by the best strategy]",
+              .type = "FILE"},
+             {.flags = "--reference-spp",
+              .target = &o->reference_spp,
+              .help = "Samples per pixel of the reference that is made [8 times the largest --spp]"},
+             {.flags = "--budget",
+              .target = &o->budget,
+              .help = "Kernel time for all of it: leaves out the largest --spp until it fits",
+              .type = "TIME"},
+             {.flags = "--clock",
+              .target = &o->clock,
+              .help = "kernel: seconds of the device's own profile; cpu: of all cores of a CPU device, over their "
+                      "number: steady on a machine that others use, too",
+              .check = OneOf<std::string>{{"kernel", "cpu"}}},
+             {.flags = "--width",
+              .target = &o->width,
+              .help = "Pixels; keeps the aspect (default: the scene's)",
+              .check = Range{1, 65535}},
+             {.flags = "-o,--output",
+              .target = &o->out,
+              .help = "Folder; a sweep that is there already goes on [SCENE_sweep]",
+              .type = "FOLDER"},
+             {.flags = "--quiet", .target = &o->quiet, .help = "Print the verdict, warnings and errors only"}}),
+        .run = [o] { return run(*o); }};
 }
 
 } // namespace opal

@@ -9,6 +9,7 @@
 #include "scene/options.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace opal {
 
@@ -23,7 +24,7 @@ struct Options {
     unsigned seed = 0;
 };
 
-std::string line_of(const ConformanceCase &c) {
+std::string text_of(const ConformanceCase &c) {
     const std::string figures = c.is_mean ? fmt::format("mean {:<11.6g} reference {:<11.6g} error {:<8.2g}", c.mean,
                                                         c.reference, c.standard_error)
                                           : fmt::format("chi-square {:<9.2f} dof {:<5g} samples {:<8.4g}",
@@ -56,15 +57,14 @@ int run(const Options &o) {
     override_strategy(strategy, o.scene.overrides);
     const DevicePick pick = pick_device(o.device, list_devices());
     const Device device = open_device(pick.info);
-    const Sources sources = load_sources(o.scene);
+    const Sources sources = load_sources(o.scene.cl_dir);
     ConformanceOptions options;
     options.build.lanes = lanes_for(pick.info, strategy.lanes, strategy.math);
     options.build.math = strategy.math;
     options.sources = &sources;
     options.seed = o.seed;
     options.overrides = o.scene.overrides;
-    info(fmt::format("device  {} (driver {}; {}), {} lanes", pick.info.name, pick.info.driver, pick.reason,
-                     options.build.lanes));
+    info(fmt::format("device  {}, {} lanes", text_of(pick), options.build.lanes));
 
     size_t cases = 0, rejected = 0;
     nlohmann::json report = {
@@ -76,7 +76,7 @@ int run(const Options &o) {
         print("{} ({}, level {:g})\n", o.files[i], test.type, test.significance_level);
         nlohmann::json results = nlohmann::json::array();
         for (const ConformanceCase &c :
-             run_test(test, device, options, [](const ConformanceCase &c) { print("{}\n", line_of(c)); })) {
+             run_test(test, device, options, [](const ConformanceCase &c) { print("{}\n", text_of(c)); })) {
             results.push_back(json_of(c));
             cases++;
             rejected += !c.passed;
@@ -92,18 +92,28 @@ int run(const Options &o) {
 
 } // namespace
 
-RunCommand setup_test(CLI::App &app) {
+Command test_command() {
     auto o = std::make_shared<Options>();
-    app.add_option("FILE.xml", o->files, "Files whose root is a <test>")->required()->type_name("");
-    add_device_option(app, o->device);
-    app.add_option("--samples", o->samples, "Of each mean or histogram [the file's sampleCount]")
-        ->check(CLI::Range(2, 2000000000));
-    app.add_option("--significance", o->significance, "Level of each file, split over its cases [the file's]")
-        ->check(CLI::Range(1e-12, 0.5));
-    app.add_option("--seed", o->seed, "Of the random numbers")->capture_default_str();
-    app.add_option("--json", o->json, "File for the results");
-    add_strategy_options(app, o->scene);
-    return [o] { return run(*o); };
+    return {.name = "test",
+            .help = "Run Nori's tests: means against references, samples against densities",
+            .options = append({{.flags = "FILE.xml",
+                                .target = &o->files,
+                                .help = "Files whose root is a <test>",
+                                .type = "",
+                                .required = true},
+                               device_row(o->device),
+                               {.flags = "--samples",
+                                .target = &o->samples,
+                                .help = "Of each mean or histogram [the file's sampleCount]",
+                                .check = Range{2, 2000000000}},
+                               {.flags = "--significance",
+                                .target = &o->significance,
+                                .help = "Level of each file, split over its cases [the file's]",
+                                .check = Range{1e-12, 0.5}},
+                               {.flags = "--seed", .target = &o->seed, .help = "Of the random numbers"},
+                               {.flags = "--json", .target = &o->json, .help = "File for the results"}},
+                              strategy_rows(o->scene)),
+            .run = [o] { return run(*o); }};
 }
 
 } // namespace opal

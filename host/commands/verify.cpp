@@ -1,4 +1,5 @@
 // opal verify: do all unbiased strategies agree on a scene?
+#include "base/error.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/progress.h"
@@ -10,6 +11,7 @@
 #include "render/renderer.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace opal {
 
@@ -95,7 +97,7 @@ bool render_for(Renderer &renderer, double seconds) {
 
 std::vector<StrategyRender> render_all(const Options &o, const std::vector<NamedStrategy> &strategies,
                                        const std::vector<FlatScene> &scenes, const Device &device, const Clock &clock) {
-    const Sources sources = load_sources(o.scene);
+    const Sources sources = load_sources(o.scene.cl_dir);
     std::vector<StrategyRender> renders;
     Progress progress("verify", double(strategies.size()), "strategies");
     for (size_t i = 0; i < strategies.size() && !interrupted(); i++) {
@@ -143,7 +145,7 @@ int run(const Options &o) {
     const DevicePick pick = pick_device(o.device, list_devices());
     info(fmt::format("verify  {}: {} strategies, {} x {} pixels, {} in all, seed {}", scene.file.string(),
                      strategies.size(), scene.camera.width, scene.camera.height, duration_text(o.budget), o.seed));
-    info(fmt::format("device  {} (driver {}; {})", pick.info.name, pick.info.driver, pick.reason));
+    info(fmt::format("device  {}", text_of(pick)));
     const auto specialise = o.scene.overrides.find("specialise");
     const bool own_kernels = specialise != o.scene.overrides.end();
     const std::vector<FlatScene> scenes = flatten_all(scene, strategies, pick.info, own_kernels);
@@ -178,30 +180,40 @@ int run(const Options &o) {
 
 } // namespace
 
-RunCommand setup_verify(CLI::App &app) {
+Command verify_command() {
     auto o = std::make_shared<Options>();
-    add_scene_options(app, o->scene);
-    add_device_option(app, o->device);
-    app.add_option(
-        "--strategies", o->strategies,
-        "Those to test, 'lighting=mis,mis=power;lighting=emitter' [all that make sense here, or where these are more "
-        "than 12 a set in which each pair of choices occurs]");
-    app.add_option("--budget", o->budget, "Time for all strategies together: 60s, 2min, 1h")
-        ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"min", 60}, {"h", 3600}}))
-        ->check(CLI::PositiveNumber)
-        ->type_name("TIME")
-        ->default_str("60s");
-    app.add_option("--significance", o->significance, "Probability of a false alarm")
-        ->check(CLI::Range(1e-12, 0.5))
-        ->capture_default_str();
-    app.add_option("--width", o->width, "Pixels [32 on the longer side, the scene's aspect]")
-        ->check(CLI::Range(1, 65535));
-    app.add_option("--height", o->height, "Pixels")->check(CLI::Range(1, 65535));
-    app.add_option("--seed", o->seed, "Of the random numbers")->capture_default_str();
-    app.add_option("-o,--output", o->out, "Folder for the evidence [verify_SCENE, on disagreement only]");
-    app.add_option("--json", o->json, "File for the results");
-    app.add_flag("--quiet", o->quiet, "Print nothing but the verdict, warnings and errors");
-    return [o] { return run(*o); };
+    return {
+        .name = "verify",
+        .help = "Hold all unbiased strategies against each other on a scene",
+        .options = append(
+            scene_rows(o->scene),
+            {device_row(o->device),
+             {.flags = "--strategies",
+              .target = &o->strategies,
+              .help = "Those to test, 'lighting=mis,mis=power;lighting=emitter' [all that make sense here, or where "
+                      "these are more than 12 a set in which each pair of choices occurs]"},
+             {.flags = "--budget",
+              .target = &o->budget,
+              .help = "Time for all strategies together: 60s, 2min, 1h",
+              .check = Duration{},
+              .type = "TIME",
+              .default_text = "60s"},
+             {.flags = "--significance",
+              .target = &o->significance,
+              .help = "Probability of a false alarm",
+              .check = Range{1e-12, 0.5}},
+             {.flags = "--width",
+              .target = &o->width,
+              .help = "Pixels [32 on the longer side, the scene's aspect]",
+              .check = Range{1, 65535}},
+             {.flags = "--height", .target = &o->height, .help = "Pixels", .check = Range{1, 65535}},
+             {.flags = "--seed", .target = &o->seed, .help = "Of the random numbers"},
+             {.flags = "-o,--output",
+              .target = &o->out,
+              .help = "Folder for the evidence [verify_SCENE, on disagreement only]"},
+             {.flags = "--json", .target = &o->json, .help = "File for the results"},
+             {.flags = "--quiet", .target = &o->quiet, .help = "Print nothing but the verdict, warnings and errors"}}),
+        .run = [o] { return run(*o); }};
 }
 
 } // namespace opal

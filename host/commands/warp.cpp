@@ -55,9 +55,8 @@ int run(const Options &o) {
     BuildOptions build;
     build.lanes = o.lanes ? o.lanes : pick.info.native_lanes;
     build.math = o.math == "fast" ? MathMode::fast : MathMode::precise;
-    const Sources sources = o.cl_dir.empty() ? Sources::embedded() : Sources::from_folder(o.cl_dir);
-    info(fmt::format("device  {} (driver {}; {}), {} lanes, math {}", pick.info.name, pick.info.driver, pick.reason,
-                     build.lanes, o.math));
+    const Sources sources = load_sources(o.cl_dir);
+    info(fmt::format("device  {}, {} lanes, math {}", text_of(pick), build.lanes, o.math));
 
     Target target = open_target(o.name, o.parameters, o.axes, device, build, sources);
     const DensityCheck check =
@@ -72,36 +71,48 @@ int run(const Options &o) {
 
 } // namespace
 
-RunCommand setup_warp(CLI::App &app) {
+Command warp_command() {
     auto o = std::make_shared<Options>();
-    app.add_option("NAME", o->name, "What to draw: a warp, bsdf:TYPE or light:KIND (--list)")->type_name("");
-    app.add_flag("--list", o->list, "List the names and their parameters");
+    std::vector<OptionRow> rows = {
+        {.flags = "NAME",
+         .target = &o->name,
+         .help = "What to draw: a warp, bsdf:TYPE or light:KIND (--list)",
+         .type = ""},
+        {.flags = "--list", .target = &o->list, .help = "List the names and their parameters"}};
     for (const TargetParameter &row : target_parameters())
-        app.add_option_function<std::string>(
-               "--" + row.name, [o, name = row.name](const std::string &value) { o->parameters[name] = value; },
-               row.help)
-            ->group("Parameters");
+        rows.push_back({.flags = "--" + row.name,
+                        .target = MapEntry{&o->parameters, row.name},
+                        .help = row.help,
+                        .group = "Parameters"});
     for (const char *axis : {"triangle-choice", "emitter-choice"})
-        app.add_option_function<std::string>(
-               std::string("--") + axis, [o, axis](const std::string &value) { o->axes[axis] = value; },
-               "of light:..., as opal render has it")
-            ->group("Parameters");
-    app.add_option("--samples", o->samples, "How many to draw")->check(CLI::Range(1000.0, 1e9))->capture_default_str();
-    app.add_option("--cells", o->cells, "Of the grid, along each side")
-        ->check(CLI::Range(2, 1000))
-        ->capture_default_str();
-    app.add_option("--significance", o->significance, "Level of the test")
-        ->check(CLI::Range(1e-12, 0.5))
-        ->capture_default_str();
-    app.add_option("--seed", o->seed, "Of the random numbers")->capture_default_str();
-    app.add_option("--plot", o->plot, "PNG of the samples' density, the pdf and the residual");
-    app.add_option("--lanes", o->lanes, "Width [the device's]")->check(CLI::IsMember({1, 4, 8, 16}));
-    app.add_option("--math", o->math, "precise or fast")
-        ->check(CLI::IsMember({"precise", "fast"}))
-        ->capture_default_str();
-    app.add_option("--cl-dir", o->cl_dir, "Read the kernels from this copy of cl/")->type_name("FOLDER");
-    add_device_option(app, o->device);
-    return [o] { return run(*o); };
+        rows.push_back({.flags = std::string("--") + axis,
+                        .target = MapEntry{&o->axes, axis},
+                        .help = "of light:..., as opal render has it",
+                        .group = "Parameters"});
+    return {
+        .name = "warp",
+        .help = "Draw samples of a warp, a BSDF or a light and hold them against their density",
+        .options = append(
+            rows,
+            {{.flags = "--samples", .target = &o->samples, .help = "How many to draw", .check = Range{1000.0, 1e9}},
+             {.flags = "--cells", .target = &o->cells, .help = "Of the grid, along each side", .check = Range{2, 1000}},
+             {.flags = "--significance",
+              .target = &o->significance,
+              .help = "Level of the test",
+              .check = Range{1e-12, 0.5}},
+             {.flags = "--seed", .target = &o->seed, .help = "Of the random numbers"},
+             {.flags = "--plot", .target = &o->plot, .help = "PNG of the samples' density, the pdf and the residual"},
+             {.flags = "--lanes",
+              .target = &o->lanes,
+              .help = "Width [the device's]",
+              .check = OneOf<int>{{1, 4, 8, 16}}},
+             {.flags = "--math",
+              .target = &o->math,
+              .help = "precise or fast",
+              .check = OneOf<std::string>{{"precise", "fast"}}},
+             cl_dir_row(o->cl_dir),
+             device_row(o->device)}),
+        .run = [o] { return run(*o); }};
 }
 
 } // namespace opal

@@ -1,7 +1,8 @@
 // Runs Nori's tests (scene/test_scene.h) on a device.
 #pragma once
 
-#include "device/program.h"
+#include "device/context.h"
+#include "device/sources.h"
 #include "read/nori/tests.h"
 #include "stats/hypothesis.h"
 

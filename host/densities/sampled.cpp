@@ -1,4 +1,5 @@
 #include "densities/sampled.h"
+#include "base/error.h"
 
 #include <fmt/format.h>
 

@@ -7,6 +7,7 @@
 #include "device/load_driver.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,5 +1,7 @@
 #include "device/buffers.h"
 
+#include "base/units.h"
+
 #include <fmt/format.h>
 
 #include <cstring>
@@ -19,30 +21,21 @@ namespace {
 // a tenth less on finding its pages. Mapped, such a buffer is the memory that kernels see.
 cl::Buffer make_cpu_buffer(const Device &device, cl_mem_flags flags, unsigned long long bytes, const void *data) {
     constexpr size_t huge_page = 2u << 20;
-    cl::Buffer buffer(device.context, flags, bytes);
-    char *const memory =
-        static_cast<char *>(device.queue.enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0, bytes));
+    cl::Buffer buffer(device.handles->context, flags, bytes);
+    char *const memory = static_cast<char *>(
+        device.handles->queue.enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0, bytes));
     char *const first = memory + (huge_page - reinterpret_cast<uintptr_t>(memory) % huge_page) % huge_page;
     if (first + huge_page <= memory + bytes)
         madvise(first, size_t(memory + bytes - first) / huge_page * huge_page,
                 MADV_HUGEPAGE); // advice: no harm where it is refused
     if (data)
         std::memcpy(memory, data, bytes);
-    device.queue.enqueueUnmapMemObject(buffer, memory);
-    device.queue.finish();
+    device.handles->queue.enqueueUnmapMemObject(buffer, memory);
+    device.handles->queue.finish();
     return buffer;
 }
 
 } // namespace
-
-std::string bytes_text(unsigned long long bytes) {
-    static const char *const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
-    double value = static_cast<double>(bytes);
-    int unit = 0;
-    for (; value >= 1024 && unit < 4; ++unit)
-        value /= 1024;
-    return unit == 0 ? fmt::format("{} bytes", bytes) : fmt::format("{:.1f} {}", value, units[unit]);
-}
 
 void check_room(const Device &device, unsigned long long bytes, const std::string &what) {
     if (bytes > device.info.memory)
@@ -57,7 +50,8 @@ cl::Buffer make_buffer(const Device &device, cl_mem_flags flags, unsigned long l
         if (device.info.type == "cpu")
             return make_cpu_buffer(device, flags, bytes, data);
         // COPY_HOST_PTR only reads the data, but OpenCL's signature is not const.
-        return cl::Buffer(device.context, flags | (data ? CL_MEM_COPY_HOST_PTR : 0), bytes, const_cast<void *>(data));
+        return cl::Buffer(device.handles->context, flags | (data ? CL_MEM_COPY_HOST_PTR : 0), bytes,
+                          const_cast<void *>(data));
     } catch (const cl::Error &error) {
         if (error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE || error.err() == CL_OUT_OF_RESOURCES ||
             error.err() == CL_OUT_OF_HOST_MEMORY || error.err() == CL_INVALID_BUFFER_SIZE)

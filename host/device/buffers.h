@@ -2,7 +2,7 @@
 // available.
 #pragma once
 
-#include "device/context.h"
+#include "device/opencl.h"
 
 #include <vector>
 
@@ -26,7 +26,7 @@ template <class T> cl::Buffer make_table(const Device &device, const std::vector
 template <class T> cl::Buffer make_zeros(const Device &device, size_t count, const std::string &what) {
     cl::Buffer buffer = make_buffer(device, CL_MEM_READ_WRITE, sizeof(T) * (count ? count : 1), nullptr, what);
     with_device(device.info, [&] {
-        return device.queue.enqueueFillBuffer(buffer, cl_uchar(0), 0, sizeof(T) * (count ? count : 1));
+        return device.handles->queue.enqueueFillBuffer(buffer, cl_uchar(0), 0, sizeof(T) * (count ? count : 1));
     });
     return buffer;
 }
@@ -35,12 +35,10 @@ template <class T> cl::Buffer make_zeros(const Device &device, size_t count, con
 template <class T> std::vector<T> read_buffer(const Device &device, const cl::Buffer &buffer, size_t count) {
     std::vector<T> rows(count);
     if (count)
-        with_device(device.info,
-                    [&] { return device.queue.enqueueReadBuffer(buffer, CL_TRUE, 0, sizeof(T) * count, rows.data()); });
+        with_device(device.info, [&] {
+            return device.handles->queue.enqueueReadBuffer(buffer, CL_TRUE, 0, sizeof(T) * count, rows.data());
+        });
     return rows;
 }
-
-// "512 bytes", "1.5 GiB"
-std::string bytes_text(unsigned long long bytes);
 
 } // namespace opal

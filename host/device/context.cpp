@@ -85,6 +85,10 @@ std::vector<DeviceInfo> list_devices(double time_limit) {
     return devices;
 }
 
+std::string text_of(const DevicePick &pick) {
+    return fmt::format("{} (driver {}; {})", pick.info.name, pick.info.driver, pick.reason);
+}
+
 DevicePick pick_device(const std::string &wanted, const std::vector<DeviceInfo> &devices) {
     if (wanted.empty())
         return default_device(devices);
@@ -101,19 +105,31 @@ DevicePick pick_device(const std::string &wanted, const std::vector<DeviceInfo> 
     throw Error(fmt::format("no OpenCL device \"{}\"; available: {}", wanted, list_of(devices)));
 }
 
+int lanes_for(const DeviceInfo &info, int wanted, MathMode math) {
+    const bool doubles = math == MathMode::double_precision;
+    if (doubles && !info.fp64)
+        throw Error(
+            fmt::format("{} (driver {}): math double makes no sense: the device has no double precision (cl_khr_fp64); "
+                        "available: precise, fast",
+                        info.name, info.driver));
+    if (wanted)
+        return wanted;
+    return doubles && info.native_lanes > 4 ? info.native_lanes / 2 : info.native_lanes;
+}
+
 Device open_device(const DeviceInfo &info) {
     return with_device(info, [&] {
-        std::optional<Device> found;
+        std::optional<cl::Device> found;
         for_each_device(info.library, [&](const DeviceInfo &seen, const cl::Device &device) {
             if (seen.platform_place == info.platform_place && seen.device_place == info.device_place &&
                 seen.name == info.name)
-                found = Device{info, device, cl::Context(), cl::CommandQueue()};
+                found = device;
         });
         if (!found)
             throw Error(fmt::format("{}: the device is gone since the drivers were asked", info.name));
-        found->context = cl::Context(found->device);
-        found->queue = cl::CommandQueue(found->context, found->device, CL_QUEUE_PROFILING_ENABLE);
-        return *found;
+        const cl::Context context(*found);
+        const cl::CommandQueue queue(context, *found, CL_QUEUE_PROFILING_ENABLE);
+        return Device{info, std::make_shared<DeviceHandles>(DeviceHandles{*found, context, queue})};
     });
 }
 

@@ -1,13 +1,9 @@
-// Finding, naming and opening OpenCL devices.
+// Finding, naming and opening OpenCL devices. Needs no header of OpenCL, whose price is 2 s a file.
 #pragma once
 
-#define CL_HPP_TARGET_OPENCL_VERSION 120
-#define CL_HPP_MINIMUM_OPENCL_VERSION 120
-#define CL_HPP_ENABLE_EXCEPTIONS
-#include <CL/opencl.hpp>
+#include "scene/strategy.h"
 
-#include "base/error.h"
-
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -39,27 +35,20 @@ struct DevicePick {
     DeviceInfo info;
     std::string reason;
 };
+std::string text_of(const DevicePick &pick); // "NAME (driver VERSION; REASON)"
 DevicePick pick_device(const std::string &wanted, const std::vector<DeviceInfo> &devices); // Error naming what there is
+
+// The width of a kernel on that device: `wanted`, or the device's own where that is 0, which doubles halve (4 at
+// least). Error where the device has no doubles and the math asks for them.
+int lanes_for(const DeviceInfo &info, int wanted, MathMode math);
+
+struct DeviceHandles; // device/opencl.h
 
 struct Device {
     DeviceInfo info;
-    cl::Device device;
-    cl::Context context;
-    cl::CommandQueue queue; // in order, profiling on
+    std::shared_ptr<const DeviceHandles> handles; // a copy shares the device
 };
 // Loads that device's driver and no other into this process. Error naming the device and the OpenCL error.
 Device open_device(const DeviceInfo &info);
-
-// "CL_OUT_OF_RESOURCES" for -5; "OpenCL error -9999" for what OpenCL 1.2 does not name.
-std::string cl_error_name(int code);
-
-// Runs `body`; a cl::Error in it becomes an Error "DEVICE: CALL failed: CL_NAME".
-template <class Body> auto with_device(const DeviceInfo &info, Body &&body) {
-    try {
-        return body();
-    } catch (const cl::Error &error) {
-        throw Error(info.name + ": " + error.what() + " failed: " + cl_error_name(error.err()));
-    }
-}
 
 } // namespace opal

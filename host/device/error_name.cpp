@@ -1,4 +1,4 @@
-#include "device/context.h"
+#include "device/opencl.h"
 
 namespace opal {
 

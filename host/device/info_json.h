@@ -6,8 +6,7 @@
 
 namespace opal {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceInfo, index, platform, name, vendor, type, version, driver, memory,
-                                   max_allocation, compute_units, fp64, vector_width, native_lanes, library,
-                                   platform_place, device_place, problem)
+void to_json(nlohmann::json &json, const DeviceInfo &info);
+void from_json(const nlohmann::json &json, DeviceInfo &info);
 
 } // namespace opal

@@ -1,7 +1,7 @@
 // Loading one driver into this process and walking through its devices. Only the probe and open_device do so.
 #pragma once
 
-#include "device/context.h"
+#include "device/opencl.h"
 
 #include <functional>
 

@@ -1,8 +1,9 @@
-#include "device/program.h"
+#include "device/sources.h"
 
 #include "base/error.h"
 #include "base/read_file.h"
 #include "device/embedded.h"
+#include "flatten/flat_scene.h"
 
 #include <fmt/format.h>
 
@@ -13,6 +14,15 @@
 namespace opal {
 
 namespace {
+
+// A call that passes lanes passes them through memory, so every function is inlined: 10 to 15 % of the time of a render
+// on PoCL. GPUs' compilers do so unasked. A simulator that knows no inlined code (Oclgrind) is given OPAL_KEEP_CALLS.
+constexpr const char *inline_all = "#if defined(__clang__) && __clang_major__ >= 7 && !defined(OPAL_KEEP_CALLS)\n"
+                                   "#pragma clang attribute push(__attribute__((always_inline)), apply_to = function)\n"
+                                   "#endif\n";
+constexpr const char *inline_end = "\n#if defined(__clang__) && __clang_major__ >= 7 && !defined(OPAL_KEEP_CALLS)\n"
+                                   "#pragma clang attribute pop\n"
+                                   "#endif\n";
 
 // The name between the quotes of `#include "name"`; empty where the line is no such directive.
 std::string included_file(const std::string &line) {
@@ -104,6 +114,26 @@ std::string Sources::expand(const std::string &file, int lanes) const {
     Expansion expansion(files, lanes);
     expansion.append(file, "program");
     return expansion.take();
+}
+
+std::string program_text(const Features &features, const BuildOptions &options, const Sources &sources) {
+    std::string text = fmt::format(
+        "#define LANES {}\n#define OPAL_DOUBLE {}\n#define OPAL_FAST {}\n#define OPAL_COUNT_TESTS {}\n", options.lanes,
+        int(options.math == MathMode::double_precision), int(options.math == MathMode::fast), int(options.count_tests));
+    for (const char *stage : {"traversal", "sampling"})
+        text += fmt::format("#define OPAL_TWICE_{} {}\n", stage, int(options.twice == stage));
+    if (!options.note.empty())
+        text += fmt::format("typedef int opal_note_{};\n", options.note); // drivers see through comments and defines
+    for (const Feature &feature : features.list)
+        text += fmt::format("#define OPAL_HAS_{} {}\n", feature.name, int(feature.on));
+#define OPAL_AXIS_DEFINE(axis, help)                                                                                   \
+    text += fmt::format("#define OPAL_AXIS_" #axis " {}\n", features.axes[AXIS_##axis]);
+    OPAL_AXES(OPAL_AXIS_DEFINE)
+#undef OPAL_AXIS_DEFINE
+    const bool specialised =
+        features.axes[AXIS_integrator] >= 0; // the general kernel would take half a minute to compile
+    const std::string body = sources.expand(options.kernels, options.lanes);
+    return specialised ? text + inline_all + body + inline_end : text + body;
 }
 
 } // namespace opal

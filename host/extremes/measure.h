@@ -1,7 +1,8 @@
 // One sweep: a row's scenes rendered in single and in double precision with the same random numbers.
 #pragma once
 
-#include "device/program.h"
+#include "device/context.h"
+#include "device/sources.h"
 #include "extremes/rows.h"
 #include "film/film.h"
 

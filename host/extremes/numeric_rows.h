@@ -1,7 +1,8 @@
 // Sweeps that need no picture: functions of the kernels asked one by one, in single and in double precision.
 #pragma once
 
-#include "device/program.h"
+#include "device/context.h"
+#include "device/sources.h"
 
 #include <optional>
 

@@ -1,5 +1,6 @@
 #include "probe/kernel_probe.h"
 
+#include "device/program.h"
 #include "device/scene_buffers.h"
 
 #include <algorithm>
@@ -47,11 +48,19 @@ FlatScene scene_of_bsdfs(const std::vector<BsdfRecord> &bsdfs) {
     return scene;
 }
 
+struct KernelProbe::OnDevice {
+    cl::Program program;
+    std::vector<cl::Buffer> scene;
+};
+
 KernelProbe::KernelProbe(const Device &device, const FlatScene &scene, const BuildOptions &build,
                          const Sources &sources)
     : device_(device), scene_(scene), lanes_(build.lanes),
-      program_(build_program(device, program_text(scene.features, with_kernels(build), sources), build)),
-      buffers_(upload_scene(device, scene)) {}
+      on_device_(std::make_unique<OnDevice>(
+          OnDevice{build_program(device, program_text(scene.features, with_kernels(build), sources), build),
+                   upload_scene(device, scene)})) {}
+
+KernelProbe::~KernelProbe() = default;
 
 cl::Buffer KernelProbe::upload(const Planes &planes) { return make_table(device_, planes.values, "a probe's input"); }
 
@@ -64,9 +73,9 @@ Planes KernelProbe::run(const char *name, bool with_scene, size_t planes, const 
         return out;
     const cl::Buffer buffer = make_zeros<float>(device_, out.values.size(), "a probe's output");
     with_device(device_.info, [&] {
-        cl::Kernel kernel(program_, name);
+        cl::Kernel kernel(on_device_->program, name);
         cl_uint place = 0;
-        for (const cl::Buffer &table : buffers_)
+        for (const cl::Buffer &table : on_device_->scene)
             if (with_scene)
                 kernel.setArg(place++, table);
         (kernel.setArg(place++, arguments), ...);
@@ -75,9 +84,9 @@ Planes KernelProbe::run(const char *name, bool with_scene, size_t planes, const 
         const cl::NDRange local(group_size(device_.info));
         for (size_t first = 0; first < out.stride; first += items_a_launch * size_t(lanes_)) {
             kernel.setArg(place, cl_uint(first));
-            device_.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items_a_launch), local);
+            device_.handles->queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items_a_launch), local);
         }
-        return device_.queue.finish();
+        return device_.handles->queue.finish();
     });
     out.values = read_buffer<float>(device_, buffer, out.values.size());
     return out;
@@ -88,8 +97,9 @@ Planes KernelProbe::numbers(size_t count, const NumberOptions &options) {
     settings.seed = options.seed;
     settings.spp = options.spp;
     settings.choices[AXIS_sampler] = options.sampler;
-    with_device(device_.info,
-                [&] { return device_.queue.enqueueWriteBuffer(buffers_[0], CL_TRUE, 0, sizeof settings, &settings); });
+    with_device(device_.info, [&] {
+        return device_.handles->queue.enqueueWriteBuffer(on_device_->scene[0], CL_TRUE, 0, sizeof settings, &settings);
+    });
     return run("numbers", true, 2 * OPAL_PROBE_PAIRS, Planes(0, count), cl_uint(options.pixel_step),
                cl_uint(options.sample_step), cl_uint(options.first_dimension));
 }

@@ -1,14 +1,20 @@
 // The functions that rendering uses, run one by one on a device (cl/kernels/probe.cl).
 #pragma once
 
-#include "device/buffers.h"
-#include "device/program.h"
+#include "device/context.h"
+#include "device/sources.h"
+#include "flatten/flat_scene.h"
 #include "kernels/probe_list.h"
 #include "stats/histogram.h"
 
 #include <array>
+#include <memory>
 #include <span>
 #include <vector>
+
+namespace cl {
+class Buffer;
+}
 
 namespace opal {
 
@@ -38,6 +44,7 @@ public:
     // `scene` gives BSDFs, emitters and triangles; its features decide what is compiled. Error: what does not build.
     KernelProbe(const Device &device, const FlatScene &scene, const BuildOptions &build,
                 const Sources &sources = Sources::embedded());
+    ~KernelProbe();
 
     // 2 OPAL_PROBE_PAIRS planes of `count` numbers in [0, 1).
     Planes numbers(size_t count, const NumberOptions &options);
@@ -53,6 +60,7 @@ public:
     const Device &device() const { return device_; }
 
 private:
+    struct OnDevice; // the program and the scene's buffers
     template <class... Arguments>
     Planes run(const char *kernel, bool with_scene, size_t planes, const Planes &shape, const Arguments &...);
     cl::Buffer upload(const Planes &planes);
@@ -60,8 +68,7 @@ private:
     const Device device_;
     FlatScene scene_;
     int lanes_;
-    cl::Program program_;
-    std::vector<cl::Buffer> buffers_; // of the scene
+    std::unique_ptr<OnDevice> on_device_;
 };
 
 // A scene that has these BSDFs, numbered as here, and nothing else worth mentioning: every feature on, every axis

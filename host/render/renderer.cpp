@@ -1,5 +1,6 @@
 #include "render/renderer.h"
 
+#include "device/program.h"
 #include "device/scene_buffers.h"
 
 #include <algorithm>
@@ -30,6 +31,12 @@ std::vector<unsigned> spread_order(unsigned count) {
 
 } // namespace
 
+struct Renderer::OnDevice {
+    std::vector<cl::Buffer> scene;
+    cl::Buffer slots, film, counts, invalid;
+    cl::Kernel render, gather, clear;
+};
+
 // CPU: tiles of 8 x 8 pixels, which keep 16 lanes full for long, and enough work-items for all cores even for one
 // pixel. GPU: a pixel a work-item, as many as it has room for.
 Renderer::Shape Renderer::shape_of_launches() const {
@@ -47,7 +54,8 @@ Renderer::Shape Renderer::shape_of_launches() const {
 
 Renderer::Renderer(const Device &device, const FlatScene &scene, const RenderOptions &options)
     : device_(device), settings_(scene.settings), options_(options),
-      pixels_(size_t(scene.settings.width) * scene.settings.height), wide_filter_(scene.features["wide_filter"]) {
+      pixels_(size_t(scene.settings.width) * scene.settings.height), wide_filter_(scene.features["wide_filter"]),
+      on_device_(std::make_unique<OnDevice>()) {
     shape_ = shape_of_launches();
     // Slot numbers have 32 bits, three floats a slot; there is room for at least one sample of each pixel.
     const unsigned long long most = std::min({slots_budget, device.info.max_allocation, slot_bytes * 0x55555555ull});
@@ -56,38 +64,41 @@ Renderer::Renderer(const Device &device, const FlatScene &scene, const RenderOpt
 
     const cl::Program program = build_program(device, program_text(scene.features, options.build, *options.sources),
                                               options.build, &compile_seconds_);
-    scene_ = upload_scene(device, scene);
-    slots_ =
+    on_device_->scene = upload_scene(device, scene);
+    on_device_->slots =
         make_buffer(device, CL_MEM_READ_WRITE, pixels_ * slot_bytes * slot_samples_, nullptr, "the samples of a pass");
-    film_ = make_zeros<float>(device, pixels_ * film_planes, "the film");
-    counts_ = make_zeros<cl_uint>(device, pixels_, "the film's sample counts");
-    invalid_ = make_zeros<cl_uint>(device, 1 + 2 * invalid_records, "the list of invalid samples");
+    on_device_->film = make_zeros<float>(device, pixels_ * film_planes, "the film");
+    on_device_->counts = make_zeros<cl_uint>(device, pixels_, "the film's sample counts");
+    on_device_->invalid = make_zeros<cl_uint>(device, 1 + 2 * invalid_records, "the list of invalid samples");
 
     with_device(device.info, [&] {
-        render_kernel_ = cl::Kernel(program, "render");
-        gather_kernel_ = cl::Kernel(program, "gather");
-        clear_kernel_ = cl::Kernel(program, "clear");
+        on_device_->render = cl::Kernel(program, "render");
+        on_device_->gather = cl::Kernel(program, "gather");
+        on_device_->clear = cl::Kernel(program, "clear");
         cl_uint place = 0;
-        for (const cl::Buffer &buffer : scene_)
-            render_kernel_.setArg(place++, buffer);
-        render_kernel_.setArg(place, slots_);
-        clear_kernel_.setArg(0, scene_[0]);
-        clear_kernel_.setArg(1, slots_);
+        for (const cl::Buffer &buffer : on_device_->scene)
+            on_device_->render.setArg(place++, buffer);
+        on_device_->render.setArg(place, on_device_->slots);
+        on_device_->clear.setArg(0, on_device_->scene[0]);
+        on_device_->clear.setArg(1, on_device_->slots);
         place = 0;
-        for (const cl::Buffer &buffer : {scene_[0], slots_, film_, counts_, invalid_})
-            gather_kernel_.setArg(place++, buffer);
+        for (const cl::Buffer &buffer :
+             {on_device_->scene[0], on_device_->slots, on_device_->film, on_device_->counts, on_device_->invalid})
+            on_device_->gather.setArg(place++, buffer);
         return 0;
     });
     compile_seconds_ += warm_up();
 }
 
+Renderer::~Renderer() = default;
+
 // Drivers finish compiling at the first launch of a kernel's shape: launches in which every work-item is past the end.
 double Renderer::warm_up() {
     const auto start = std::chrono::steady_clock::now();
     with_device(device_.info, [&] {
-        render_kernel_.setArg(cl_uint(scene_.size()) + 1, cl_uint(0));
-        set_pass_arguments(render_kernel_, cl_uint(scene_.size()) + 2, 0, 0);
-        return launch(render_kernel_, shape_.items_a_launch);
+        on_device_->render.setArg(cl_uint(on_device_->scene.size()) + 1, cl_uint(0));
+        set_pass_arguments(on_device_->render, cl_uint(on_device_->scene.size()) + 2, 0, 0);
+        return launch(on_device_->render, shape_.items_a_launch);
     });
     kernel_seconds_ = 0;
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -98,11 +109,11 @@ void Renderer::restart(unsigned seed, unsigned first_sample) {
     next_ = first_sample;
     kernel_seconds_ = 0;
     with_device(device_.info, [&] {
-        device_.queue.enqueueWriteBuffer(scene_[0], CL_TRUE, 0, sizeof settings_, &settings_);
-        device_.queue.enqueueFillBuffer(film_, cl_uint(0), 0, pixels_ * film_planes * 4);
-        device_.queue.enqueueFillBuffer(counts_, cl_uint(0), 0, pixels_ * 4);
-        device_.queue.enqueueFillBuffer(invalid_, cl_uint(0), 0, (1 + 2 * invalid_records) * 4);
-        return device_.queue.finish();
+        device_.handles->queue.enqueueWriteBuffer(on_device_->scene[0], CL_TRUE, 0, sizeof settings_, &settings_);
+        device_.handles->queue.enqueueFillBuffer(on_device_->film, cl_uint(0), 0, pixels_ * film_planes * 4);
+        device_.handles->queue.enqueueFillBuffer(on_device_->counts, cl_uint(0), 0, pixels_ * 4);
+        device_.handles->queue.enqueueFillBuffer(on_device_->invalid, cl_uint(0), 0, (1 + 2 * invalid_records) * 4);
+        return device_.handles->queue.finish();
     });
 }
 
@@ -110,8 +121,8 @@ void Renderer::restart(unsigned seed, unsigned first_sample) {
 double Renderer::launch(const cl::Kernel &kernel, unsigned items) {
     cl::Event event;
     const unsigned padded = ceil_div(items, shape_.local_size) * shape_.local_size;
-    device_.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(padded), cl::NDRange(shape_.local_size),
-                                       nullptr, &event);
+    device_.handles->queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(padded),
+                                                cl::NDRange(shape_.local_size), nullptr, &event);
     event.wait();
     const double seconds = 1e-9 * double(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
                                          event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
@@ -132,7 +143,7 @@ unsigned Renderer::next_pass_samples(unsigned left) const {
     return std::min(std::clamp(samples, 1u, slot_samples_), left);
 }
 
-void Renderer::set_pass_arguments(cl::Kernel &kernel, cl_uint place, unsigned chunk_samples, unsigned pass_samples) {
+void Renderer::set_pass_arguments(cl::Kernel &kernel, unsigned place, unsigned chunk_samples, unsigned pass_samples) {
     for (unsigned value : {shape_.tiles * shape_.chunks, shape_.tile_width, shape_.tile_height, shape_.chunks,
                            chunk_samples, next_, pass_samples})
         kernel.setArg(place++, cl_uint(value));
@@ -140,27 +151,27 @@ void Renderer::set_pass_arguments(cl::Kernel &kernel, cl_uint place, unsigned ch
 
 bool Renderer::render_pass(unsigned samples, const Continue &go_on) {
     const unsigned chunk_samples = ceil_div(samples, shape_.chunks), items = shape_.tiles * shape_.chunks;
-    const cl_uint first_place = cl_uint(scene_.size()) + 1;
-    set_pass_arguments(render_kernel_, first_place + 1, chunk_samples, samples);
-    set_pass_arguments(clear_kernel_, 3, chunk_samples, samples);
+    const cl_uint first_place = cl_uint(on_device_->scene.size()) + 1;
+    set_pass_arguments(on_device_->render, first_place + 1, chunk_samples, samples);
+    set_pass_arguments(on_device_->clear, 3, chunk_samples, samples);
     double seconds = 0;
     bool stopped = false;
     unsigned done = 0;
     for (const unsigned place : spread_order(ceil_div(items, shape_.items_a_launch))) {
         const unsigned first = place * shape_.items_a_launch;
         if (stopped) { // the slots that nothing is rendered into
-            clear_kernel_.setArg(2, cl_uint(first));
-            launch(clear_kernel_, shape_.items_a_launch);
+            on_device_->clear.setArg(2, cl_uint(first));
+            launch(on_device_->clear, shape_.items_a_launch);
             continue;
         }
-        render_kernel_.setArg(first_place, cl_uint(first));
-        seconds += launch(render_kernel_, shape_.items_a_launch);
+        on_device_->render.setArg(first_place, cl_uint(first));
+        seconds += launch(on_device_->render, shape_.items_a_launch);
         done += std::min(shape_.items_a_launch, items - first);
         stopped = go_on && !go_on(next_ + samples * double(done) / items, kernel_seconds_);
     }
-    gather_kernel_.setArg(5, cl_uint(next_));
-    gather_kernel_.setArg(6, cl_uint(samples));
-    launch(gather_kernel_, ceil_div(unsigned(pixels_), unsigned(options_.build.lanes)));
+    on_device_->gather.setArg(5, cl_uint(next_));
+    on_device_->gather.setArg(6, cl_uint(samples));
+    launch(on_device_->gather, ceil_div(unsigned(pixels_), unsigned(options_.build.lanes)));
     seconds_a_sample_ = seconds / samples;
     next_ += samples;
     return !stopped;
@@ -179,8 +190,8 @@ Film Renderer::film() const {
     Film film;
     film.width = int(settings_.width);
     film.height = int(settings_.height);
-    film.count = read_buffer<cl_uint>(device_, counts_, pixels_);
-    const std::vector<float> planes = read_buffer<float>(device_, film_, pixels_ * film_planes);
+    film.count = read_buffer<cl_uint>(device_, on_device_->counts, pixels_);
+    const std::vector<float> planes = read_buffer<float>(device_, on_device_->film, pixels_ * film_planes);
     const auto value = [&](unsigned plane, unsigned low, size_t pixel) { // hi + lo
         return double(planes[plane * pixels_ + pixel]) + double(planes[(plane + low) * pixels_ + pixel]);
     };
@@ -195,7 +206,7 @@ Film Renderer::film() const {
         for (unsigned c = 0; wide_filter_ && c < 4; c++)
             film.weighted[p][c] = value(14 + c, 4, p);
     }
-    const std::vector<cl_uint> invalid = read_buffer<cl_uint>(device_, invalid_, 1 + 2 * invalid_records);
+    const std::vector<cl_uint> invalid = read_buffer<cl_uint>(device_, on_device_->invalid, 1 + 2 * invalid_records);
     film.invalid = invalid[0];
     for (unsigned i = 0; i < std::min(invalid[0], invalid_records); i++)
         film.invalid_places.push_back(

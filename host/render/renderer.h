@@ -2,11 +2,17 @@
 // interrupted. What is rendered depends on pixel, sample index and seed alone, not on the cuts.
 #pragma once
 
-#include "device/program.h"
+#include "device/context.h"
+#include "device/sources.h"
 #include "film/film.h"
 #include "flatten/flat_scene.h"
 
 #include <functional>
+#include <memory>
+
+namespace cl {
+class Kernel;
+}
 
 namespace opal {
 
@@ -21,6 +27,7 @@ class Renderer {
 public:
     // Compiles the program and uploads the scene. Error: what does not build or fit.
     Renderer(const Device &device, const FlatScene &scene, const RenderOptions &options);
+    ~Renderer();
 
     // Asked after each launch with the samples a pixel (a fraction within a pass) and the kernel seconds so far; false
     // stops.
@@ -40,14 +47,15 @@ public:
     double compile_seconds() const { return compile_seconds_; }
 
 private:
-    struct Shape { // of the launches; constant, because drivers compile a kernel anew for each
+    struct OnDevice; // buffers and kernels
+    struct Shape {   // of the launches; constant, because drivers compile a kernel anew for each
         unsigned tile_width, tile_height, items_a_launch, local_size;
         unsigned tiles, chunks; // work-items a pass: each tile's samples are cut into chunks
     };
     Shape shape_of_launches() const;
     double warm_up();
     bool render_pass(unsigned samples, const Continue &go_on);
-    void set_pass_arguments(cl::Kernel &kernel, cl_uint place, unsigned chunk_samples, unsigned pass_samples);
+    void set_pass_arguments(cl::Kernel &kernel, unsigned place, unsigned chunk_samples, unsigned pass_samples);
     double launch(const cl::Kernel &kernel, unsigned items);
     unsigned next_pass_samples(unsigned left) const;
 
@@ -57,9 +65,7 @@ private:
     Shape shape_{};
     size_t pixels_ = 0;
     bool wide_filter_ = false;
-    std::vector<cl::Buffer> scene_;
-    cl::Buffer slots_, film_, counts_, invalid_;
-    cl::Kernel render_kernel_, gather_kernel_, clear_kernel_;
+    std::unique_ptr<OnDevice> on_device_;
     unsigned next_ = 0, slot_samples_ = 0;
     double kernel_seconds_ = 0, compile_seconds_ = 0;
     double seconds_a_sample_ = 0; // of one sample of each pixel, by the last pass

@@ -4,10 +4,24 @@
 #include "base/log.h"
 #include "base/values.h"
 #include "scene/options.h"
+#include "stats/special.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
 
 namespace opal {
 
 using nlohmann::json;
+
+namespace {
+
+double samples_per_second(const FilmStatistics &s, const RenderSeconds &seconds) {
+    return seconds.render > 0 ? double(s.samples + s.invalid) / seconds.render : 0;
+}
+
+} // namespace
 
 json strategy_json(const SceneDescription &scene) {
     json j = {{"integrator", scene.integrator_type}};
@@ -25,10 +39,22 @@ json strategy_json(const SceneDescription &scene) {
     return j;
 }
 
-json report_json(const SceneDescription &scene, const DeviceInfo &device, int lanes, unsigned seed, const Film &film,
-                 const RenderSeconds &seconds) {
+double RenderReport::spp() const {
     const FilmStatistics s = statistics_of(film);
-    json j;
+    return double(s.samples + s.invalid) / (double(film.width) * film.height);
+}
+
+std::string RenderReport::text() const {
+    const FilmStatistics s = statistics_of(film);
+    const std::string of =
+        s.empty_pixels ? "of the pixels that have samples" : fmt::format("+- {:.2g}", s.stderr_luminance);
+    return fmt::format("result  mean luminance {:.6g} {}, {:.4g} M paths/s over {:.3g} s of kernel time",
+                       s.mean_luminance, of, 1e-6 * samples_per_second(s, seconds), seconds.render);
+}
+
+nlohmann::json RenderReport::json() const {
+    const FilmStatistics s = statistics_of(film);
+    nlohmann::json j;
     j["scene"] = scene.file.string();
     j["device"] = device.name;
     j["driver"] = device.driver;
@@ -36,18 +62,18 @@ json report_json(const SceneDescription &scene, const DeviceInfo &device, int la
     j["strategy"] = strategy_json(scene);
     j["width"] = film.width;
     j["height"] = film.height;
-    j["spp"] = double(s.samples + s.invalid) / (double(film.width) * film.height);
+    j["spp"] = spp();
     j["seed"] = seed;
     j["mean_rgb"] = s.mean_rgb;
     j["mean_luminance"] = s.mean_luminance;
-    j["stderr_luminance"] = s.empty_pixels ? json() : json(s.stderr_luminance); // null: unknown
+    j["stderr_luminance"] = s.empty_pixels ? nlohmann::json() : nlohmann::json(s.stderr_luminance); // null: unknown
     j["empty_pixels"] = s.empty_pixels;
     j["single_sample_pixels"] = s.single_sample_pixels;
     j["invalid_samples"] = s.invalid;
-    j["invalid_places"] = json::array();
+    j["invalid_places"] = nlohmann::json::array();
     for (const InvalidSample &p : film.invalid_places)
         j["invalid_places"].push_back({{"x", p.x}, {"y", p.y}, {"sample", p.sample}});
-    j["samples_per_second"] = seconds.render > 0 ? double(s.samples + s.invalid) / seconds.render : 0;
+    j["samples_per_second"] = samples_per_second(s, seconds);
     j["seconds"] = {{"load", seconds.load},
                     {"bvh", seconds.bvh},
                     {"compile", seconds.compile},
@@ -56,6 +82,79 @@ json report_json(const SceneDescription &scene, const DeviceInfo &device, int la
     j["warnings"] = warnings();
     j["version"] = OPAL_VERSION;
     return j;
+}
+
+StopReport report_stop(const StopRule &rule, const Stopped &stopped, const RenderReport &render) {
+    const FilmStatistics s = statistics_of(render.film);
+    StopReport report{rule, stopped, render.spp(), render.seconds.render};
+    report.relative_error = s.empty_pixels         ? INFINITY
+                            : s.mean_luminance > 0 ? s.stderr_luminance / s.mean_luminance
+                                                   : 0;
+    const double half = stats::normal_quantile(0.5 + StopReport::confidence / 2) * s.stderr_luminance;
+    if (s.empty_pixels == 0)
+        report.interval = {s.mean_luminance - half, s.mean_luminance + half};
+    if (rule.relative_error > 0)
+        report.met = s.mean_luminance > 0 && report.relative_error <= rule.relative_error;
+    return report;
+}
+
+std::string StopReport::text() const {
+    std::string words =
+        fmt::format("error   stopped after {:.4g} samples a pixel and {:.4g} s of kernel time: ", spp, seconds);
+    words += !interval ? "the mean luminance of the whole image is unknown"
+                       : fmt::format("relative standard error {:.3g} % of the mean luminance, which is in [{:.6g}, "
+                                     "{:.6g}] with confidence {:g} %",
+                                     100 * relative_error, (*interval)[0], (*interval)[1], 100 * confidence);
+    if (rule.relative_error > 0)
+        words += fmt::format("; a pilot of {} samples a pixel ({:.3g} s) decided and is not in the image",
+                             stopped.pilot_spp, stopped.pilot_seconds);
+    return words;
+}
+
+std::string StopReport::warning() const {
+    if (met)
+        return "";
+    const std::string asked = fmt::format("--target-error {:g} %: ", 100 * rule.relative_error);
+    return asked + (interval ? fmt::format("reached {:.3g} %", 100 * relative_error) : "not reached");
+}
+
+nlohmann::json StopReport::json() const {
+    const bool by_time = rule.seconds > 0;
+    nlohmann::json j = {{"rule", by_time ? "time" : "target-error"},
+                        {"target", by_time ? rule.seconds : rule.relative_error},
+                        {"reached", by_time ? seconds : relative_error},
+                        {"relative_error", relative_error},
+                        {"confidence", confidence},
+                        {"mean_luminance_interval", nullptr}};
+    if (interval)
+        j["mean_luminance_interval"] = *interval;
+    if (!by_time)
+        j.update({{"met", met}, {"pilot_spp", stopped.pilot_spp}, {"pilot_seconds", stopped.pilot_seconds}});
+    return j;
+}
+
+std::vector<std::string> film_warnings(const Film &film, double seconds) {
+    std::vector<std::string> lines;
+    if (film.invalid) {
+        std::string places;
+        for (const InvalidSample &p : film.invalid_places)
+            places += fmt::format(" pixel ({}, {}) sample {};", p.x, p.y, p.sample);
+        lines.push_back(fmt::format("{} samples were NaN or infinite and are left out of the image; the first:{}",
+                                    film.invalid, places));
+    }
+    const FilmStatistics s = statistics_of(film);
+    if (s.empty_pixels == 0)
+        return lines;
+    const size_t pixels = film.count.size();
+    std::string words = fmt::format(
+        "{} of {} pixels ({:.3g} %) have no {}sample: the image shows nothing there, and its mean is that "
+        "of the others, with unknown error",
+        s.empty_pixels, pixels, 100 * double(s.empty_pixels) / double(pixels), film.invalid ? "valid " : "");
+    if (!film.invalid)
+        words += fmt::format("; one sample of every pixel takes about {:.2g} s",
+                             seconds * double(pixels) / double(s.samples));
+    lines.push_back(words);
+    return lines;
 }
 
 void add_metadata(Image &image, const json &report, const std::string &command_line) {

@@ -3,9 +3,13 @@
 
 #include "device/context.h"
 #include "film/film.h"
+#include "render/stop_rules.h"
 #include "scene/scene.h"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
+
+#include <array>
+#include <optional>
 
 namespace opal {
 
@@ -16,10 +20,41 @@ struct RenderSeconds {
 // One key an axis, as the command line names choices, and the numbers that go with them.
 nlohmann::json strategy_json(const SceneDescription &scene);
 
-nlohmann::json report_json(const SceneDescription &scene, const DeviceInfo &device, int lanes, unsigned seed,
-                           const Film &film, const RenderSeconds &seconds);
+// A finished render: text() is its line for people, json() all there is.
+struct RenderReport {
+    const SceneDescription &scene;
+    const Film &film;
+    const DeviceInfo &device;
+    int lanes = 1;
+    unsigned seed = 0;
+    RenderSeconds seconds{};
 
-// The same as header attributes of an image.
+    double spp() const; // samples a pixel, on average
+    std::string text() const;
+    nlohmann::json json() const; // with the warnings so far
+};
+
+// How a stop rule ended a render. The interval holds the true mean luminance with that confidence. Error and interval
+// are unknown where pixels have no sample: what those would add to the mean is unknown.
+struct StopReport {
+    static constexpr double confidence = 0.95;
+    StopRule rule;
+    Stopped stopped;
+    double spp = 0, seconds = 0; // samples a pixel and kernel time of the film
+    double relative_error = 0;   // of the mean luminance, as its standard error; infinite: unknown
+    std::optional<std::array<double, 2>> interval{};
+    bool met = true; // false: the target error was not reached
+
+    std::string text() const;
+    std::string warning() const; // empty where the rule was met
+    nlohmann::json json() const;
+};
+StopReport report_stop(const StopRule &rule, const Stopped &stopped, const RenderReport &render);
+
+// What the image lacks: invalid samples, pixels without one. seconds: the film's kernel time.
+std::vector<std::string> film_warnings(const Film &film, double seconds);
+
+// A report as header attributes of an image.
 void add_metadata(Image &image, const nlohmann::json &report, const std::string &command_line);
 
 } // namespace opal

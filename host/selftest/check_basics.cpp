@@ -1,4 +1,6 @@
 // Record layouts, random numbers bit for bit, and math functions in ulp.
+#include "device/buffers.h"
+#include "device/program.h"
 #include "kernels/selftest_list.h"
 #include "probe/kernel_probe.h"
 #include "selftest/selftest.h"
@@ -45,8 +47,8 @@ double wrong_layouts(const Device &device, const cl::Program &program) {
     with_device(device.info, [&] {
         cl::Kernel kernel(program, "layout");
         kernel.setArg(0, out);
-        device.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(1), cl::NDRange(1));
-        return device.queue.finish();
+        device.handles->queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(1), cl::NDRange(1));
+        return device.handles->queue.finish();
     });
     const std::vector<cl_uint> said = read_buffer<cl_uint>(device, out, host.size());
     double wrong = 0;
@@ -81,9 +83,9 @@ Findings math_errors(const Device &device, const cl::Program &program, MathMode 
         kernel.setArg(0, in);
         kernel.setArg(1, cl_uint(math_count));
         kernel.setArg(2, out);
-        device.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(math_count),
-                                          cl::NDRange(group_size(device.info)));
-        return device.queue.finish();
+        device.handles->queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(math_count),
+                                                   cl::NDRange(group_size(device.info)));
+        return device.handles->queue.finish();
     });
     const std::vector<float> values = read_buffer<float>(device, out, xs.size());
     // Relaxed math may do what it likes; 512 ulp, 3e-5, is where an image would begin to differ from noise.

@@ -1,7 +1,8 @@
 // Does this device, with its driver, compute right? Groups of checks, each meant to be run in a process of its own.
 #pragma once
 
-#include "device/program.h"
+#include "device/context.h"
+#include "device/sources.h"
 
 #include <string>
 #include <vector>

@@ -6,6 +6,7 @@
 #include "image/image.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace opal {
 
@@ -60,6 +61,8 @@ SweepRecord resume(const std::filesystem::path &folder, const SweepRecord &fresh
     kept.left_out_spp.clear();
     return kept;
 }
+
+void save(const SweepRecord &record, const std::filesystem::path &folder) { save(record, folder, nullptr); }
 
 void save(const SweepRecord &record, const std::filesystem::path &folder, const nlohmann::json &summary) {
     nlohmann::json j = record;

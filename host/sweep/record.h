@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 namespace opal {
 
@@ -75,6 +75,7 @@ SweepRecord load_record(const std::filesystem::path &folder);
 // sweep.
 SweepRecord resume(const std::filesystem::path &folder, const SweepRecord &fresh);
 // sweep.json, written safely; with the summary of a finished sweep, which a later run does not read.
-void save(const SweepRecord &record, const std::filesystem::path &folder, const nlohmann::json &summary = {});
+void save(const SweepRecord &record, const std::filesystem::path &folder);
+void save(const SweepRecord &record, const std::filesystem::path &folder, const nlohmann::json &summary);
 
 } // namespace opal

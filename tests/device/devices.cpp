@@ -1,6 +1,7 @@
 // Finding devices: one that crashes, hangs or says nothing costs its own line, and the choice among the others is
 // explained.
 #include "device/ask_driver.h"
+#include "device/opencl.h"
 #include "support/device.h"
 #include "support/scratch.h"
 
@@ -218,8 +219,8 @@ TEST_CASE("A device is chosen by index, type or part of its name", "[devices]") 
 }
 
 TEST_CASE("The device that is opened is the one that was listed", "[devices]") {
-    CHECK(device().device.getInfo<CL_DEVICE_NAME>().find(device().info.name) != std::string::npos);
-    CHECK(device().queue.getInfo<CL_QUEUE_PROPERTIES>() == CL_QUEUE_PROFILING_ENABLE);
+    CHECK(device().handles->device.getInfo<CL_DEVICE_NAME>().find(device().info.name) != std::string::npos);
+    CHECK(device().handles->queue.getInfo<CL_QUEUE_PROPERTIES>() == CL_QUEUE_PROFILING_ENABLE);
     const std::string wanted = std::to_string(device().info.index);
     CHECK_THAT(run_shell(std::string(OPAL_BINARY) + " devices --json --device " + wanted).out,
                Catch::Contains(device().info.driver));

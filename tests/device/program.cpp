@@ -1,5 +1,5 @@
 // Building and running kernels on the device, and what is said when that fails.
-#include "support/device.h"
+#include "support/kernels.h"
 
 using namespace opal;
 using namespace opal::test;

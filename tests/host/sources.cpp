@@ -1,6 +1,7 @@
 // Reading and expanding the kernels' sources, and the text that a program is built from.
+#include "device/sources.h"
 #include "base/error.h"
-#include "device/program.h"
+#include "flatten/flat_scene.h"
 #include "support/scratch.h"
 
 #include <catch2/catch.hpp>

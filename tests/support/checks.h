@@ -2,7 +2,8 @@
 // (support/mutants.h): what passes for the one must fail for the other.
 #pragma once
 
-#include "device/program.h"
+#include "device/context.h"
+#include "device/sources.h"
 
 #include <functional>
 #include <string>

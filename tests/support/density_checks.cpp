@@ -1,7 +1,7 @@
 // What is drawn against its density; BSDFs, emitters and the functions below them against formulas in double.
 #include "densities/sampled.h"
-#include "support/device.h"
 #include "support/kernel_checks.h"
+#include "support/kernels.h"
 #include "support/pictures.h"
 #include "support/rooms.h"
 

@@ -1,4 +1,4 @@
-#include "support/device.h"
+#include "support/kernels.h"
 
 #include "device/ask_driver.h"
 #include "support/scratch.h"

@@ -1,8 +1,9 @@
 // The device that tests run on, opened once a process: $OPAL_TEST_DEVICE (as --device takes it), else the first CPU.
 #pragma once
 
-#include "device/buffers.h"
-#include "device/program.h"
+#include "device/context.h"
+#include "device/sources.h"
+#include "flatten/flat_scene.h"
 
 #include <catch2/catch.hpp>
 
@@ -21,45 +22,5 @@ Features all_features(const std::map<std::string, bool> &except = {});
 
 // Opal's own sources with those below tests/device/ as "tests/NAME.cl" among them.
 const Sources &sources();
-
-// Builds `kernels` ("tests/warps.cl", "kernels/render.cl"), kept for the next test that asks for the same.
-cl::Program program(const std::string &kernels, int lanes, const Features &features = all_features(),
-                    MathMode math = MathMode::precise);
-
-// The same from a text in the test itself, which may #include what is below cl/.
-cl::Program program_of(const std::string &text, int lanes, const Features &features = all_features(),
-                       MathMode math = MathMode::precise);
-
-// A kernel's output: what a test passes as Output<T>{count}, and reads after run().
-template <class T> struct Output {
-    size_t count;
-    cl::Buffer buffer = make_zeros<T>(device(), count, "a test's output");
-    explicit Output(size_t n) : count(n) {}
-    std::vector<T> read() const { return read_buffer<T>(device(), buffer, count); }
-};
-
-// Runs kernel `name` over work_items and waits. Arguments: Output, std::vector (a read-only table), or a plain value.
-template <class... Arguments>
-void run(const cl::Program &program, const std::string &name, size_t work_items, const Arguments &...arguments) {
-    with_device(device().info, [&] {
-        cl::Kernel kernel(program, name.c_str());
-        std::vector<cl::Buffer> inputs; // clSetKernelArg does not retain
-        cl_uint place = 0;
-        const auto set = [&](const auto &argument) {
-            if constexpr (requires { argument.buffer; })
-                kernel.setArg(place++, argument.buffer);
-            else if constexpr (requires {
-                                   argument.data();
-                                   argument.size();
-                               })
-                kernel.setArg(place++, inputs.emplace_back(make_table(device(), argument, "a test's input")));
-            else
-                kernel.setArg(place++, argument);
-        };
-        (set(arguments), ...);
-        device().queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(work_items), cl::NullRange);
-        return device().queue.finish();
-    });
-}
 
 } // namespace opal::test

@@ -1,7 +1,7 @@
 // The film's kernels on samples of the test's own making.
 #include "stats/moments.h"
 #include "support/checks.h"
-#include "support/device.h"
+#include "support/kernels.h"
 #include "support/pictures.h"
 #include "support/rooms.h"
 

@@ -1,8 +1,8 @@
 // The random numbers.
 #include "probe/kernel_probe.h"
 #include "stats/hypothesis.h"
-#include "support/device.h"
 #include "support/kernel_checks.h"
+#include "support/kernels.h"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,69 @@
+// What `opal bench` tells, for people and as JSON.
+#pragma once
+
+#include "bench/renders.h"
+#include "scene/scene.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace opal {
+
+// What the rates belong to: a scene's tree on a device.
+struct BenchSubject {
+    const SceneDescription &scene;
+    const FlatScene &flat;
+    const DevicePick &device;
+    int lanes = 1;
+
+    std::string scene_text() const;
+    std::string device_text() const;
+    std::string tree_text() const;
+    nlohmann::json json() const;
+
+private:
+    size_t tree_bytes() const;
+    double bytes_a_triangle() const;
+};
+
+// Rays of one kind.
+struct RayFigures {
+    std::string kind;
+    size_t rays = 0;
+    RayTimes times;
+
+    std::string text() const;
+    nlohmann::json json() const;
+};
+
+// The render itself.
+struct RenderFigures {
+    unsigned spp = 0;
+    PathRates rates;
+    PathCounts counts;
+    double compile_cold = 0, compile_warm = 0; // seconds
+
+    std::string text() const;
+    nlohmann::json json() const;
+
+private:
+    double rays_per_second() const;
+};
+
+// A variant of the render beside it.
+struct RaceFigures {
+    std::string name;
+    Race race;
+
+    std::string text() const;
+    nlohmann::json json() const;
+};
+
+// Where a render's time goes: a stage that is done twice adds its share.
+struct TimeShares {
+    double traversal = 0, sampling = 0;
+
+    std::string text() const;
+    nlohmann::json json() const;
+};
+
+} // namespace opal

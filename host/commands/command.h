@@ -1,0 +1,65 @@
+// A command of `opal` as data: its name, its options as rows, and the function that runs it.
+// The parser (commands/parse.h) reads these rows; whatever else lists options reads them, too.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace opal {
+
+// An entry of a map, which exists only where the option was given: map["lighting"] = "mis".
+struct MapEntry {
+    std::map<std::string, std::string> *map;
+    std::string key;
+};
+
+// The variable that an option sets. A bool is a flag without a value; a vector takes several values. An optional
+// stays empty where the option was not given.
+using OptionTarget = std::variant<bool *, int *, unsigned *, double *, std::string *, std::filesystem::path *, MapEntry,
+                                  std::optional<unsigned> *, std::vector<unsigned> *, std::vector<std::string> *>;
+
+// What a value must be.
+template <class T> struct Range {
+    T least, greatest; // both are possible
+};
+template <class T> struct OneOf { std::vector<T> values; };
+struct Positive {};
+struct Duration {}; // a number of seconds above 0, or with a unit: 60s, 2min, 1h
+using OptionCheck = std::variant<std::monostate, Range<int>, Range<unsigned>, Range<double>, OneOf<int>,
+                                 OneOf<std::string>, Positive, Duration>;
+
+struct OptionRow {
+    std::string flags; // "-o,--output"; without dashes: an argument known by its place, "SCENE.xml"
+    OptionTarget target;
+    std::string help;
+    OptionCheck check{};
+    std::optional<std::string> type{}; // the word for a value in the help; none: by the target, as TEXT or UINT
+    const char *group = nullptr;       // the heading in the help; nullptr: Options
+    const char *excludes = nullptr;    // a flag that may not be given beside this one
+    std::string default_text{};        // the default in the help; empty: the target's value
+    bool required = false;
+    bool comma_separated = false; // a vector's values may be given as one word: 4,16,64
+    bool many_words = false;      // a vector takes all words up to the next flag
+};
+
+struct Command {
+    std::string name;
+    std::string help; // one sentence; empty: `opal --help` does not list the command
+    std::vector<OptionRow> options{};
+    std::function<int()> run{};         // returns the process's exit code; throws Error; empty: see subcommands
+    std::vector<Command> subcommands{}; // one of them must be named
+};
+
+// `rows` and then `more`.
+inline std::vector<OptionRow> append(std::vector<OptionRow> rows, std::vector<OptionRow> more) {
+    rows.insert(rows.end(), more.begin(), more.end());
+    return rows;
+}
+
+} // namespace opal

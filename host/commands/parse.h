@@ -1,0 +1,12 @@
+// The command line, parsed by the rows of the commands. parse.cpp alone knows CLI11.
+#pragma once
+
+#include "commands/command.h"
+
+namespace opal {
+
+// Sets the targets of the options in `words` (without the program's name) and returns the `run` of the command that
+// they name. --help and --version print their text, and `run` then does nothing. Error: what is wrong with the words.
+std::function<int()> parse(const std::vector<Command> &commands, const std::vector<std::string> &words);
+
+} // namespace opal

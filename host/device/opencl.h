@@ -1,0 +1,33 @@
+// OpenCL itself: its C++ header and the handles of an open device. Few files include this, as the header is dear to
+// compile: those that make buffers, build programs and launch kernels.
+#pragma once
+
+#define CL_HPP_TARGET_OPENCL_VERSION 120
+#define CL_HPP_MINIMUM_OPENCL_VERSION 120
+#define CL_HPP_ENABLE_EXCEPTIONS
+#include <CL/opencl.hpp>
+
+#include "base/error.h"
+#include "device/context.h"
+
+namespace opal {
+
+struct DeviceHandles {
+    cl::Device device;
+    cl::Context context;
+    cl::CommandQueue queue; // in order, profiling on
+};
+
+// "CL_OUT_OF_RESOURCES" for -5; "OpenCL error -9999" for what OpenCL 1.2 does not name.
+std::string cl_error_name(int code);
+
+// Runs `body`; a cl::Error in it becomes an Error "DEVICE: CALL failed: CL_NAME".
+template <class Body> auto with_device(const DeviceInfo &info, Body &&body) {
+    try {
+        return body();
+    } catch (const cl::Error &error) {
+        throw Error(info.name + ": " + error.what() + " failed: " + cl_error_name(error.err()));
+    }
+}
+
+} // namespace opal

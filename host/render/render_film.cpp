@@ -1,0 +1,38 @@
+#include "render/render_film.h"
+
+#include "base/progress.h"
+#include "base/signals.h"
+#include "flatten/flat_scene.h"
+
+#include <optional>
+
+namespace opal {
+
+RenderedFilm render_film(const Device &device, const FlatScene &scene, const RenderOptions &options,
+                         const StopRule &rule, unsigned seed, unsigned spp) {
+    constexpr unsigned most_samples = 1u << 31;
+    Renderer renderer(device, scene, options);
+    renderer.restart(seed);
+    watch_interrupts();
+    const unsigned most = spp ? spp : most_samples;
+    const double pixels = double(scene.settings.width) * scene.settings.height;
+    RenderedFilm rendered;
+    {
+        std::optional<Progress> progress; // none where nobody knows yet how much there is to do
+        if (rule.seconds > 0)
+            progress.emplace("render", rule.seconds, "s");
+        else if (!rule.given())
+            progress.emplace("render", most * pixels);
+        rendered.stopped = render_until(renderer, rule, seed, most, [&](double samples, double kernel_seconds) {
+            if (progress)
+                progress->update(rule.seconds > 0 ? kernel_seconds : samples * pixels);
+            return !interrupted();
+        });
+    }
+    rendered.film = renderer.film();
+    rendered.compile_seconds = renderer.compile_seconds();
+    rendered.kernel_seconds = renderer.kernel_seconds();
+    return rendered;
+}
+
+} // namespace opal

@@ -1,0 +1,46 @@
+#include "sweep/auto.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace opal {
+
+AutoChoice choose_strategy(const SceneDescription &scene, const Device &device, const Sources &sources, unsigned seed) {
+    constexpr double pilot_seconds = 0.25;
+    const std::vector<Candidate> candidates = parse_strategies(scene, {"course"}, {});
+    std::vector<Pilot> pilots;
+    for (const Candidate &c : candidates) {
+        Measured measured(device, c, sources, device.info.type == "cpu" ? Clock::cpu : Clock::kernel);
+        pilots.push_back(run_pilot(measured, seed, pilot_seconds));
+    }
+    const std::vector<double> costs = pilot_costs(pilots);
+    AutoChoice choice;
+    choice.chosen = size_t(std::min_element(costs.begin(), costs.end()) - costs.begin());
+    choice.strategy = candidates[choice.chosen].scene.strategy;
+    const double least = costs[choice.chosen];
+    for (size_t i = 0; i < costs.size(); i++)
+        choice.candidates.push_back(
+            {candidates[i].name, candidates[i].label, least > 0 ? costs[i] / least : 1, pilots[i].spp});
+    return choice;
+}
+
+std::string AutoChoice::text() const {
+    std::string lines;
+    for (size_t i = 0; i < candidates.size(); i++)
+        lines += fmt::format("{}auto    {}: {:.3g} times the best's time to equal error ({} pilot samples a pixel){}",
+                             i ? "\n" : "", candidates[i].label, candidates[i].relative_cost, candidates[i].pilot_spp,
+                             i == chosen ? ", taken" : "");
+    return lines;
+}
+
+nlohmann::json AutoChoice::json() const {
+    nlohmann::json j = {{"chosen", candidates[chosen].name}, {"candidates", nlohmann::json::array()}};
+    for (const Row &row : candidates)
+        j["candidates"].push_back(
+            {{"strategy", row.name}, {"relative_cost", row.relative_cost}, {"pilot_spp", row.pilot_spp}});
+    return j;
+}
+
+} // namespace opal
