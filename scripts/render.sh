@@ -4,7 +4,7 @@
 set -euo pipefail
 top=$(cd "$(dirname "$0")/.." && pwd)
 
-"$top/scripts/build.sh" --target opal
+OPAL_PRESET=release "$top/scripts/build.sh" --target opal
 [ $# -gt 0 ] || set -- "$top/scenes/cbox_mis.xml"
 echo "render: build/release/opal render $*"
 "$top/build/release/opal" render "$@"
