@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# From a bare Debian 12 machine to a picture: installs, builds, renders a scene to an EXR and a PNG in the current folder.
+# From a bare Debian 12 machine to a picture: installs, builds, renders a scene to an EXR and a PNG in the current
+# folder.
 #   scripts/render.sh [SCENE.xml [options of `opal render`]]
 set -euo pipefail
 top=$(cd "$(dirname "$0")/.." && pwd)

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Installs what Opal is built and run with on Debian 12 (apt-get, as root or by sudo). Does nothing where all is there.
+#   scripts/setup.sh [PACKAGE ...]      more packages to install
 set -euo pipefail
 
 packages=(
@@ -9,6 +10,7 @@ packages=(
     libopenexr-dev libpng-dev libpugixml-dev                     # images and XML
     libfmt-dev libcli11-dev nlohmann-json3-dev                   # text, command line, JSON
     catch2 libtinyobjloader-dev                                  # tests
+    "$@"
 )
 
 missing=()
@@ -33,4 +35,5 @@ fi
 echo "setup: installing ${missing[*]}"
 export DEBIAN_FRONTEND=noninteractive
 "${as_root[@]}" apt-get update -qq
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
