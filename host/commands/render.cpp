@@ -158,8 +158,8 @@ nlohmann::json choose_strategy(SceneDescription &scene, const Device &device, co
     const std::vector<Candidate> candidates = parse_strategies(scene, {"course"}, {});
     std::vector<Pilot> pilots;
     for (const Candidate &c : candidates) {
-        Measured measured(device, c, sources, device.info.type == "cpu" ? Clock::cpu : Clock::kernel);
-        pilots.push_back(run_pilot(measured, seed, pilot_seconds));
+        CompiledStrategy strategy(device, c, sources, device.info.type == "cpu" ? Clock::cpu : Clock::kernel);
+        pilots.push_back(run_pilot(strategy, seed, pilot_seconds));
     }
     const std::vector<double> costs = pilot_costs(pilots);
     const size_t best = size_t(std::min_element(costs.begin(), costs.end()) - costs.begin());
