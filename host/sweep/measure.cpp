@@ -46,8 +46,6 @@ CompiledStrategy::RenderResult CompiledStrategy::render(unsigned spp, unsigned s
 
 namespace {
 
-double luminance(double r, double g, double b) { return 0.212671 * r + 0.715160 * g + 0.072169 * b; }
-
 // The pilot's spp: its first number, the largest, and the largest factor from one try to the next.
 constexpr unsigned first_spp = 8, max_spp = 1u << 16;
 constexpr double max_growth = 8;
@@ -69,8 +67,7 @@ Pilot run_pilot(CompiledStrategy &strategy, unsigned seed, double seconds) {
     }
     Pilot pilot{spp, r.seconds / spp, {}, {}, strategy.uses_mis()};
     for (size_t p = 0; p < r.film.sum.size(); p++) {
-        const double n = std::fmax(2, r.film.count[p]),
-                     sum = luminance(r.film.sum[p][0], r.film.sum[p][1], r.film.sum[p][2]);
+        const double n = std::fmax(2, r.film.count[p]), sum = luminance(r.film.sum[p]);
         pilot.mean.push_back(sum / n);
         pilot.variance.push_back(std::fmax(0, r.film.squares[p][3] - sum * sum / n) / (n - 1));
     }
