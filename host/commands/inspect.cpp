@@ -165,7 +165,7 @@ int run_inspect(const InspectOptions &options) {
     print_strategy(scene, lanes);
     print_buffers(flat);
     print_features(flat.features);
-    for (const std::string &line : sanity_warnings(scene, flat))
+    for (const std::string &line : precision_warnings(scene, flat))
         warn(line);
     if (options.bench)
         print_savings(options, scene);

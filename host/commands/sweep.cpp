@@ -51,8 +51,8 @@ void check_numbers(const Options &o) {
     if (o.replicates < 2)
         throw Error(fmt::format("--replicates {}: an interval needs at least 2", o.replicates));
     for (unsigned spp : o.spp)
-        if (spp < 1 || spp > pilot_first)
-            throw Error(fmt::format("--spp {}: possible are 1 to {}", spp, pilot_first));
+        if (spp < 1 || spp > first_pilot_sample)
+            throw Error(fmt::format("--spp {}: possible are 1 to {}", spp, first_pilot_sample));
 }
 
 Image read_reference(const std::string &file, const SceneDescription &scene) {
@@ -214,7 +214,7 @@ int run(const Options &o) {
     for (const Candidate &c : candidates) // all rows now: references to them stay good
         record.strategy(c.name, c.label).device = c.device;
     save(record, plan.folder); // the folder can be written
-    for (const Part part : {measure_points, take_pictures})
+    for (const Part part : {measure_points, render_equal_time_images})
         for (size_t d = 0; d < devices.size(); d++) {
             std::vector<Candidate> own;
             std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(own),
