@@ -1,5 +1,6 @@
 // opal sweep: error against time of several strategies on one scene.
 #include "base/command_line.h"
+#include "base/hash.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/read_file.h"
@@ -34,17 +35,16 @@ struct Options {
     bool quiet = false;
 };
 
-// FNV-1a (Fowler, Noll, Vo) over the scene's text, its resolved strategy and its meshes.
+// Identity of what a sweep measures: a hash over the scene's text, its resolved strategy and its meshes.
 std::string hash_of(const SceneDescription &scene) {
     std::string bytes = read_file(scene.file);
     bytes += dump(strategy_json(scene));
     for (const Mesh &mesh : scene.meshes)
         if (const auto *m = std::get_if<TriangleMesh>(&mesh.shape))
             bytes.append(reinterpret_cast<const char *>(m->positions.data()), m->positions.size() * sizeof(Vec3));
-    unsigned long long hash = 0xcbf29ce484222325ull;
-    for (unsigned char byte : bytes)
-        hash = (hash ^ byte) * 0x100000001b3ull;
-    return fmt::format("{:016x}", hash);
+    Fnv1a hash;
+    hash.add(std::as_bytes(std::span(bytes)));
+    return fmt::format("{:016x}", hash.value());
 }
 
 void check_numbers(const Options &o) {
