@@ -60,7 +60,7 @@ double relative_difference_of_means(const std::vector<double> &a, const std::vec
 // tree.
 SceneDescription gallery_with_tree() {
     SceneDescription scene = gallery(32, 24);
-    scene.meshes.push_back(made_of(cube({-0.1, 0.2, 0.5}, 0.15), bsdf_record(BSDF_dielectric)));
+    scene.meshes.push_back(made_of(cube({-0.1, 0.2, 0.5}, 0.15), examples::dielectric()));
     return scene;
 }
 

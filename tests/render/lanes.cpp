@@ -46,7 +46,7 @@ Film at_lanes(const SceneDescription &scene, int lanes, MathMode math = MathMode
 // The gallery with another cube of glass is too large to do without a tree at any width.
 SceneDescription large_gallery(int width, int height) {
     SceneDescription scene = gallery(width, height);
-    scene.meshes.push_back(made_of(cube({-0.1, 0.2, 0.5}, 0.15), bsdf_record(BSDF_dielectric)));
+    scene.meshes.push_back(made_of(cube({-0.1, 0.2, 0.5}, 0.15), examples::dielectric()));
     return scene;
 }
 

@@ -12,17 +12,18 @@ using namespace opal::test;
 
 namespace {
 
-// Of comparisons that are independent of each other and by continuous statistics: not the exact ones, and not Sobol's,
-// whose error is smaller than the variance says.
+// Adds the p-values of independent comparisons by continuous statistics. Sobol's are left out: his numbers' error is
+// smaller than the variance says.
 void add(std::vector<double> &values, const Findings &findings) {
     for (const Finding &finding : findings)
-        if (finding.p > 0 && finding.p < 1 && finding.what.find("sobol") == std::string::npos)
-            values.push_back(finding.p);
+        if (finding.kind == FigureKind::p_value && finding.figure > 0 && finding.figure < 1 &&
+            finding.check.find("sobol") == std::string::npos)
+            values.push_back(finding.figure);
 }
 
 } // namespace
 
-TEST_CASE("The p-values of the suite are uniform", "[p_values]") {
+TEST_CASE("The p-values of the suite are uniform", "[p_values][stat]") {
     const Sources &sources = Sources::embedded();
     std::vector<double> values;
     for (unsigned round = 0; round < 3; round++) {
@@ -38,7 +39,7 @@ TEST_CASE("The p-values of the suite are uniform", "[p_values]") {
 }
 
 // What verify and compare say of one strategy against itself.
-TEST_CASE("Two seeds of one strategy are not declared different more often than stated", "[p_values]") {
+TEST_CASE("Two seeds of one strategy are not declared different more often than stated", "[p_values][stat]") {
     constexpr unsigned spp = 32;
     constexpr int pairs = 100;
     const Overrides how = GENERATE(Overrides{{"lighting", "bsdf"}}, Overrides{{"lighting", "emitter"}},

@@ -72,8 +72,8 @@ Findings agreement_of(const Group &group, const Sources &sources, unsigned seed)
     }
     for (size_t i = 0; i < samples.size(); i++)
         for (size_t j = i + 1; j < samples.size(); j++)
-            findings.push_back({group.name + ": strategies " + std::to_string(i) + " and " + std::to_string(j),
-                                stats::welch_test(samples[i], samples[j]).p_value});
+            findings.push_back(p_value(group.name + ": strategies " + std::to_string(i) + " and " + std::to_string(j),
+                                       stats::welch_test(samples[i], samples[j]).p_value));
     return findings;
 }
 
@@ -81,10 +81,8 @@ Findings agreement_of(const Group &group, const Sources &sources, unsigned seed)
 
 Findings check_agreement(const Sources &sources, unsigned seed) {
     Findings findings = agreement_of(path_group(), sources, seed);
-    for (const Group &group : {direct_group(), occlusion_group()}) {
-        const Findings more = agreement_of(group, sources, seed + unsigned(findings.size()));
-        findings.insert(findings.end(), more.begin(), more.end());
-    }
+    for (const Group &group : {direct_group(), occlusion_group()})
+        append(findings, agreement_of(group, sources, seed + unsigned(findings.size())));
     return findings;
 }
 

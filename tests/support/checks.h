@@ -3,26 +3,21 @@
 #pragma once
 
 #include "device/program.h"
+#include "selftest/finding.h"
 
 #include <functional>
 #include <string>
-#include <vector>
 
 namespace opal::test {
 
-// One comparison: its p-value, or 0 and 1 where it is exact.
-struct Finding {
-    std::string what;
-    double p;
-};
-using Findings = std::vector<Finding>;
-
-// A check at this level, split over its findings (Sidak): a right kernel fails one check in a hundred thousand.
+// A check at this level, split over its p-values (Sidak): a right kernel fails one check in a hundred thousand.
 constexpr double check_level = 1e-5;
-const Finding &worst(const Findings &findings);
+const Finding &worst(const Findings &findings); // the first that fails, else the smallest p-value
 bool rejected(const Findings &findings);
+std::string text_of(const Finding &finding);     // what, of which case, figure and limit
 void require_all_pass(const Findings &findings); // CHECKs each, with what it is
 
+// A comparison that holds or does not, without statistics.
 Finding exact(const std::string &what, bool holds);
 
 using Check = std::function<Findings(const Sources &sources, unsigned seed)>;

@@ -55,7 +55,7 @@ double fresnel_at_normal(double near, double far) { return std::pow((near - far)
 
 // A pane seen at right angles: what it reflects shines, what it lets through meets nothing.
 SceneDescription reflection(float index) {
-    BsdfRecord glass = bsdf_record(BSDF_dielectric);
+    BsdfRecord glass = examples::dielectric();
     glass.u.dielectric = {index, 1};
     SceneDescription scene = scene_of({made_of(quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), glass),
                                        light(Parallelogram{{-1, 2, -1}, {2, 0, 0}, {0, 0, 2}}, {1, 1, 1})});
@@ -166,7 +166,7 @@ Findings check_choices(const Sources &sources, unsigned) {
             return double(probe.bsdf_eval(0, wi, std::vector{wo}).at(EVAL_PDF, 0));
         };
         const auto coated = [](float ks) {
-            BsdfRecord record = bsdf_record(BSDF_microfacet, 1 - ks);
+            BsdfRecord record = examples::microfacet(0.2, 1 - ks);
             record.u.microfacet.alpha = 0.001f;
             record.u.microfacet.ks = ks;
             return record;
@@ -175,7 +175,7 @@ Findings check_choices(const Sources &sources, unsigned) {
             probe_of(coated(0.5f)); // drawn as wished: it tells the density of the coat alone, beside the base's
         const double base = wi.z / pi, coat = 2 * density(half, mirrored) - base;
         for (float share : {1e-6f, 3e-4f, 0.3f}) {
-            BsdfRecord phong = bsdf_record(BSDF_phong);
+            BsdfRecord phong = examples::phong(20);
             phong.u.phong.pd = share;
             phong.u.phong.n = 1e4f; // nothing of the lobe goes back to the viewer
             KernelProbe probe = probe_of(phong);

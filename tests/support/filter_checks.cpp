@@ -14,7 +14,7 @@ namespace {
 struct NamedFilter {
     std::string name;
     Filter filter;
-    std::function<double(double)> weight; // of a distance (SCENE_FORMAT section 3)
+    std::function<double(double)> weight; // of a distance
 };
 
 double mitchell(double x) { // Mitchell and Netravali 1988, B = C = 1/3, radius 2
@@ -49,7 +49,7 @@ SceneDescription half_lit(double edge) {
     // -1.
     const double x = 1 - 2 * edge / width;
     SceneDescription scene = scene_of({light(Parallelogram{{x, -90, 1}, {0, 180, 0}, {50, 0, 0}}, {1, 1, 1})});
-    scene.meshes[0].bsdf.record = bsdf_record(BSDF_diffuse, 0);
+    scene.meshes[0].bsdf.record = diffuse(0);
     scene.camera.width = width;
     scene.camera.height = height;
     scene.camera.fov = 90;
@@ -96,22 +96,22 @@ Findings check_filters(const Sources &sources, unsigned seed) {
         const Film film = filtered(half_lit(edge), f.filter, spp, seed + 1, sources);
         const double whole = integral(f.weight, -2, 2);
         if (!film.weighted.empty()) // per sample of a pixel, those of all pixels around together
-            findings.push_back({f.name + ": the weights' sum",
-                                stats::t_test(over_rows(film,
-                                                        [&](int y) {
-                                                            double sum = 0;
-                                                            for (int x = 2; x + 2 < width; x += 4)
-                                                                sum += film.weighted[size_t(y) * width + size_t(x)][3] /
-                                                                       spp / 3;
-                                                            return sum;
-                                                        }),
-                                              whole * whole)
-                                    .p_value});
+            findings.push_back(p_value(
+                f.name + ": the weights' sum",
+                stats::t_test(over_rows(film,
+                                        [&](int y) {
+                                            double sum = 0;
+                                            for (int x = 2; x + 2 < width; x += 4)
+                                                sum += film.weighted[size_t(y) * width + size_t(x)][3] / spp / 3;
+                                            return sum;
+                                        }),
+                              whole * whole)
+                    .p_value));
         for (int x = middle - 3; x <= middle + 3; x++) {
             const double lit_share = integral(f.weight, -2, std::clamp(edge - (x + 0.5), -2.0, 2.0)) / whole;
             findings.push_back(
-                {f.name + ": edge at column " + std::to_string(x),
-                 stats::t_test(over_rows(film, [&](int y) { return value(film, x, y); }), lit_share).p_value});
+                p_value(f.name + ": edge at column " + std::to_string(x),
+                        stats::t_test(over_rows(film, [&](int y) { return value(film, x, y); }), lit_share).p_value));
         }
     }
     return findings;

@@ -37,9 +37,8 @@ void require_all_killed(const std::vector<Control> &controls, unsigned seed) {
         const Findings findings = control.check(sources, seed);
         const bool dead = rejected(findings);
         killed += dead;
-        const Finding &by = worst(findings);
-        fmt::print("{} by {:<14} {} (cl/{}): {}, p = {:.2g}\n", dead ? "killed  " : "SURVIVED", control.check_name,
-                   control.mutant.name, control.mutant.file, by.what, by.p);
+        fmt::print("{} by {:<14} {} (cl/{}): {}\n", dead ? "killed  " : "SURVIVED", control.check_name,
+                   control.mutant.name, control.mutant.file, text_of(worst(findings)));
         std::fflush(stdout);
         CHECK(dead);
     }

@@ -1,8 +1,7 @@
 // The random numbers.
-#include "probe/kernel_probe.h"
 #include "stats/hypothesis.h"
-#include "support/device.h"
 #include "support/kernel_checks.h"
+#include "support/probe.h"
 
 #include <fmt/format.h>
 
@@ -14,11 +13,7 @@ namespace opal::test {
 
 namespace {
 
-KernelProbe probe_at(int lanes, const Sources &sources) {
-    BuildOptions build;
-    build.lanes = lanes;
-    return KernelProbe(device(), scene_of_bsdfs({}), build, sources);
-}
+KernelProbe probe_at(int lanes, const Sources &sources) { return probe_of(scene_of_bsdfs({}), lanes, sources); }
 
 unsigned bits24(float u) { return unsigned(std::ldexp(double(u), 24)); } // exact: every number is k 2^-24
 
@@ -58,8 +53,8 @@ Finding uncorrelated(const std::string &what, const Planes &a, size_t plane_a, c
     const size_t n = a.count - shift;
     for (size_t i = 0; i < n; i++)
         sum += (double(a.at(plane_a, i)) - 0.5) * (double(b.at(plane_b, i + shift)) - 0.5);
-    return {what,
-            stats::two_sided_p(sum / double(n) * 12 * std::sqrt(double(n)), INFINITY)}; // variance of a product: 1/144
+    const double variance = 1.0 / 144; // of a product of two numbers
+    return p_value(what, stats::two_sided_p(sum / double(n) / std::sqrt(variance / double(n)), INFINITY));
 }
 
 // 16 x 16 cells of pairs.
@@ -69,7 +64,7 @@ Finding uniform_pairs(const std::string &what, const Planes &a, size_t plane_a, 
     const size_t n = a.count - shift;
     for (size_t i = 0; i < n; i++)
         observed[size_t(a.at(plane_a, i) * 16) * 16 + size_t(b.at(plane_b, i + shift) * 16)]++;
-    return {what, stats::chi_square_test(observed, std::vector<double>(256, double(n) / 256)).p_value};
+    return p_value(what, stats::chi_square_test(observed, std::vector<double>(256, double(n) / 256)).p_value);
 }
 
 } // namespace
@@ -83,7 +78,7 @@ Findings check_known_numbers(const Sources &sources, unsigned) {
         options.first_dimension = 4;
         options.pixel_step = 7;
         options.sample_step = 3;
-        const std::string where = " at " + std::to_string(lanes) + " lanes";
+        const std::string where = at_width(lanes);
         const Planes independent = probe.numbers(1001, options);
         for (const Known &known : independent_numbers)
             findings.push_back(
@@ -197,10 +192,10 @@ Findings check_stratified(const Sources &sources, unsigned seed) {
             }
             for (const std::vector<double> &counts : {left_out, by_column, by_row}) {
                 const double all = std::accumulate(counts.begin(), counts.end(), 0.0);
-                findings.push_back(
-                    {fmt::format("strata left out alike at {} samples", spp),
-                     stats::chi_square_test(counts, std::vector<double>(counts.size(), all / double(counts.size())))
-                         .p_value});
+                findings.push_back(p_value(
+                    fmt::format("strata left out alike at {} samples", spp),
+                    stats::chi_square_test(counts, std::vector<double>(counts.size(), all / double(counts.size())))
+                        .p_value));
             }
         }
     }
@@ -224,7 +219,7 @@ Findings check_independence(const Sources &sources, unsigned seed) {
         options.seed = seed + 1;
         const Planes other_seed = probe.numbers(count, options);
         std::vector<double> values(pixels.values.begin(), pixels.values.begin() + count);
-        findings.push_back({name + "uniform over pixels", stats::ks_uniform_test(values).p_value});
+        findings.push_back(p_value(name + "uniform over pixels", stats::ks_uniform_test(values).p_value));
         for (size_t shift : {1u, 2u, 16u, 400u}) {
             findings.push_back(
                 uncorrelated(name + "pixels " + std::to_string(shift) + " apart", pixels, 0, pixels, 0, shift));

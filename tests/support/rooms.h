@@ -9,16 +9,6 @@ namespace opal::test {
 // A camera of width x height pixels at `from`, looking at `to` with that full horizontal angle, box filter.
 Camera camera(Vec3 from, Vec3 to, int width, int height, double fov = 60);
 
-// The quadrilateral o, o + u, o + v, o + u + v that faces u x v, as two triangles.
-TriangleMesh quad(Vec3 o, Vec3 u, Vec3 v);
-
-// The cube [-size, size]^3 around `center`, 12 triangles, facing outwards (inwards where `inwards`).
-TriangleMesh cube(Vec3 center, double size, bool inwards = false);
-
-// Record of a BSDF with its usual parameters, grey of that reflectance where it has one.
-BsdfRecord bsdf_record(int kind, float reflectance = 0.5f);
-Mesh made_of(TriangleMesh shape, const BsdfRecord &bsdf);
-
 // A closed cube whose walls have that albedo and emit that radiance, seen from inside. Radiance is the same L at every
 // point in every direction, so L = emitted + albedo L: every pixel of every full path tracer has the mean emitted / (1
 // - albedo).
