@@ -26,7 +26,7 @@ void check_table(const Outcome &outcome, int exit_code, const std::vector<std::s
 
 } // namespace
 
-TEST_CASE("gpu_check passes right kernels and not wrong ones", "[gpu_check]") {
+TEST_CASE("gpu_check passes right kernels and not wrong ones", "[gpu_check][stat][long]") {
     const ScratchFolder folder;
     const std::string pack = (folder / "pack").string(), gpu_check = pack + "/gpu_check";
     const Outcome packed = run_shell(OPAL_SOURCE_DIR "/scripts/gpu_check --opal " OPAL_BINARY " --pack " + pack);

@@ -36,7 +36,7 @@ Answers answers(const std::string &environment) {
 
 } // namespace
 
-TEST_CASE("Other OpenCL loaders find the same devices", "[loaders]") {
+TEST_CASE("Other OpenCL loaders find the same devices", "[loaders][skips]") {
     const char *const folders = std::getenv("OPAL_TEST_LOADERS");
     if (!folders) {
         WARN("skipped: OPAL_TEST_LOADERS names no folder that holds another libOpenCL.so.1 (PyPI's nvidia-cuda-opencl "

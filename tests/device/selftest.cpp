@@ -29,7 +29,7 @@ Outcome selftest_of_mutant(const std::string &group, const std::string &file, co
 
 } // namespace
 
-TEST_CASE("This device passes, at both widths and with both kinds of math", "[selftest]") {
+TEST_CASE("This device passes, at both widths and with both kinds of math", "[selftest][stat]") {
     const ScratchFolder folder;
     const Outcome outcome = selftest("--json " + (folder / "out.json").string());
     INFO(outcome.out << outcome.err);
@@ -40,7 +40,7 @@ TEST_CASE("This device passes, at both widths and with both kinds of math", "[se
         CHECK(check.at("passed") == true);
 }
 
-TEST_CASE("What computes wrong is found", "[selftest]") {
+TEST_CASE("What computes wrong is found", "[selftest][stat]") {
     struct Mutant {
         const char *group, *file, *from, *to, *found;
     };

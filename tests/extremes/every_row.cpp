@@ -7,7 +7,7 @@
 using namespace opal;
 using namespace opal::test;
 
-TEST_CASE("Every row keeps what it promises, and nothing is NaN or infinite", "[every_row]") {
+TEST_CASE("Every row keeps what it promises, and nothing is NaN or infinite", "[every_row][stat][long]") {
     if (!device().info.fp64) {
         WARN("the device has no double precision: nothing to hold single against");
         return;
@@ -24,7 +24,7 @@ TEST_CASE("Every row keeps what it promises, and nothing is NaN or infinite", "[
     }
 }
 
-TEST_CASE("No ray of 1e8 at edges and vertices of closed meshes is lost", "[every_row]") {
+TEST_CASE("No ray of 1e8 at edges and vertices of closed meshes is lost", "[every_row][stat][long]") {
     for (const double scale : {1e-4, 1e-2, 1.0, 1e2, 1e4}) {
         const extremes::How how{64, 1024, test_seed(72) + unsigned(std::log10(scale) + 4)};
         INFO("scale " << scale);

@@ -31,7 +31,7 @@ std::string mutant(const ScratchFolder &folder, const std::string &file, const s
 
 } // namespace
 
-TEST_CASE("All cases of tests/cases/conformance pass", "[conformance]") {
+TEST_CASE("All cases of tests/cases/conformance pass", "[conformance][stat]") {
     std::string files;
     for (const auto &entry : std::filesystem::directory_iterator(cases))
         if (entry.path().extension() == ".xml")
@@ -64,7 +64,7 @@ TEST_CASE("--samples and --significance override the file", "[conformance]") {
     CHECK_THAT(outcome.out, Catch::Contains("level 0.00123"));
 }
 
-TEST_CASE("Wrong kernels are rejected", "[conformance]") {
+TEST_CASE("Wrong kernels are rejected", "[conformance][stat]") {
     struct Mutant {
         const char *file, *from, *to, *test;
         unsigned samples;

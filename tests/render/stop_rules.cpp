@@ -44,7 +44,7 @@ struct Rendering {
 
 } // namespace
 
-TEST_CASE("The interval of --target-error covers the true mean as often as it says", "[stop_rules]") {
+TEST_CASE("The interval of --target-error covers the true mean as often as it says", "[stop_rules][stat]") {
     Rendering r;
     const FilmStatistics truth = r.until({}, test_seed(1), 1 << 17);
     constexpr double target = 0.05;

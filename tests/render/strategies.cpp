@@ -46,11 +46,11 @@ void require_agreement(const SceneDescription &scene, unsigned spp, const std::v
 
 } // namespace
 
-TEST_CASE("Strategies of one expectation agree in the general kernel", "[strategies]") {
+TEST_CASE("Strategies of one expectation agree in the general kernel", "[strategies][stat]") {
     require_all_pass(check_agreement(Sources::embedded(), test_seed(10)));
 }
 
-TEST_CASE("All ways to trace paths give one picture", "[strategies]") {
+TEST_CASE("All ways to trace paths give one picture", "[strategies][stat]") {
     SceneDescription scene = gallery();
     scene.strategy.max_depth = 8; // so that --rr off ends, in a closed room
     require_agreement(
@@ -71,7 +71,7 @@ TEST_CASE("All ways to trace paths give one picture", "[strategies]") {
          {{"lighting", "mis"}, {"math", "fast"}, {"rr", "throughput"}}});
 }
 
-TEST_CASE("All ways to gather direct light give one picture", "[strategies]") {
+TEST_CASE("All ways to gather direct light give one picture", "[strategies][stat]") {
     require_agreement(
         matte_gallery(), 128,
         {{{"integrator", "direct_lighting"}, {"lighting", "bsdf"}, {"hemisphere", "cosine"}},

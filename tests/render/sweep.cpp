@@ -43,7 +43,7 @@ size_t count(const std::string &text, const std::string &word) {
 
 } // namespace
 
-TEST_CASE("A sweep ranks strategies, tells it on one page, and goes on where it stopped", "[sweep]") {
+TEST_CASE("A sweep ranks strategies, tells it on one page, and goes on where it stopped", "[sweep][stat]") {
     const Place place;
     const std::string what = "--strategies lighting=bsdf lighting=emitter --spp 16,64 --reference-spp 4096 -o out ";
     const Outcome first = place.sweep(what + "--replicates 3");
@@ -83,7 +83,7 @@ TEST_CASE("A sweep ranks strategies, tells it on one page, and goes on where it 
     CHECK_THAT(other.err, Catch::Contains("holds another sweep (width was 24, is 12)"));
 }
 
-TEST_CASE("The slope of every independent unbiased strategy is -1 within its interval", "[sweep]") {
+TEST_CASE("The slope of every independent unbiased strategy is -1 within its interval", "[sweep][stat]") {
     const std::string integrator = GENERATE("path_mis", "direct_lighting");
     CAPTURE(integrator);
     const Place place;

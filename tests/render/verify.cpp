@@ -55,7 +55,7 @@ SceneDescription load(const Place &place, const std::string &integrator) {
 
 } // namespace
 
-TEST_CASE("All sensible strategies of a right renderer agree", "[verify]") {
+TEST_CASE("All sensible strategies of a right renderer agree", "[verify][stat]") {
     const Place place;
     const Outcome outcome = place.verify("--budget 20s");
     INFO(outcome.out << outcome.err);
@@ -72,7 +72,7 @@ TEST_CASE("All sensible strategies of a right renderer agree", "[verify]") {
     CHECK_FALSE(std::filesystem::exists(place.folder / "verify_wall"));
 }
 
-TEST_CASE("A bias of 2 % in one strategy is found, and the strategy is named", "[verify]") {
+TEST_CASE("A bias of 2 % in one strategy is found, and the strategy is named", "[verify][stat]") {
     const Place place;
     const Mutant mutant{"uniform sampling 2 % too bright", "bsdfs/diffuse.cl", "b.use_cosine ? (real)(1) : 2 * wo.z",
                         "b.use_cosine ? (real)(1) : R(2.04) * wo.z"};
@@ -89,7 +89,7 @@ TEST_CASE("A bias of 2 % in one strategy is found, and the strategy is named", "
         CHECK(std::filesystem::exists(place.folder / "verify_wall" / file));
 }
 
-TEST_CASE("A bias of 2 % of light sampling is found by the strategies chosen by default", "[verify]") {
+TEST_CASE("A bias of 2 % of light sampling is found by the strategies chosen by default", "[verify][stat]") {
     const Place place;
     const Mutant mutant{"light samples 2 % too bright", "lighting.cl",
                         "emitter_radiance(scene, id)), wo.z * per_density",

@@ -30,7 +30,7 @@ const std::vector<Mutant> planted = {
 
 } // namespace
 
-TEST_CASE("All strategies agree on every scene of ours", "[verify_scenes]") {
+TEST_CASE("All strategies agree on every scene of ours", "[verify_scenes][stat][long]") {
     const ScratchFolder folder;
     size_t scenes = 0;
     for (const auto &entry : std::filesystem::recursive_directory_iterator(OPAL_SOURCE_DIR "/scenes")) {
@@ -45,7 +45,7 @@ TEST_CASE("All strategies agree on every scene of ours", "[verify_scenes]") {
     CHECK(scenes >= 15);
 }
 
-TEST_CASE("verify finds every bias of 2 % planted in the Cornell box within a minute", "[verify_scenes]") {
+TEST_CASE("verify finds every bias of 2 % planted in the Cornell box within a minute", "[verify_scenes][stat][long]") {
     const ScratchFolder folder;
     for (const Mutant &mutant : planted) {
         for (const auto &[name, text] : mutated(Sources::embedded(), mutant).files)

@@ -17,7 +17,7 @@ Outcome warp(const std::string &arguments) {
 
 } // namespace
 
-TEST_CASE("Every target of the list is accepted", "[warp_command]") {
+TEST_CASE("Every target of the list is accepted", "[warp_command][stat]") {
     const Outcome list = warp("--list");
     REQUIRE(list.exit_code == 0);
     std::istringstream lines(list.out);
@@ -30,7 +30,7 @@ TEST_CASE("Every target of the list is accepted", "[warp_command]") {
     CHECK(targets >= 13);
 }
 
-TEST_CASE("Lobes are accepted at grazing incidence, narrow and wide, at one lane", "[warp_command]") {
+TEST_CASE("Lobes are accepted at grazing incidence, narrow and wide, at one lane", "[warp_command][stat]") {
     for (const char *arguments :
          {"bsdf:microfacet --alpha 0.02 --theta 89.9", "bsdf:microfacet --alpha 1 --kd 0 --theta 80 --phi 200",
           "bsdf:phong --n 2000 --pd 0 --theta 70", "beckmann --alpha 0.003", "phong_lobe --n 1e5",
@@ -41,7 +41,7 @@ TEST_CASE("Lobes are accepted at grazing incidence, narrow and wide, at one lane
     }
 }
 
-TEST_CASE("A wrong density is rejected", "[warp_command]") {
+TEST_CASE("A wrong density is rejected", "[warp_command][stat]") {
     const ScratchFolder folder;
     std::filesystem::copy(OPAL_SOURCE_DIR "/cl", folder / "cl", std::filesystem::copy_options::recursive);
     const auto replace = [&](const std::string &file, const std::string &from, const std::string &to) {
