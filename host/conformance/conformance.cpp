@@ -30,8 +30,8 @@ std::string name_of(const Bsdf &bsdf) {
 class TestRun {
 public:
     TestRun(const TestDescription &test, const Device &device, const ConformanceOptions &options,
-            const std::function<void(const ConformanceCase &)> &told)
-        : test_(test), device_(device), options_(options), told_(told) {}
+            const std::function<void(const ConformanceCase &)> &on_case)
+        : test_(test), device_(device), options_(options), on_case_(on_case) {}
 
     std::vector<ConformanceCase> run() {
         const double cases =
@@ -47,8 +47,8 @@ public:
 private:
     void finish(ConformanceCase result) {
         result.passed = !result.result.rejected(level_);
-        if (told_)
-            told_(result);
+        if (on_case_)
+            on_case_(result);
         done_.push_back(std::move(result));
     }
 
@@ -136,7 +136,7 @@ private:
     const TestDescription &test_;
     const Device &device_;
     const ConformanceOptions &options_;
-    const std::function<void(const ConformanceCase &)> &told_;
+    const std::function<void(const ConformanceCase &)> &on_case_;
     double level_ = 0;
     std::vector<ConformanceCase> done_;
 };
@@ -145,8 +145,8 @@ private:
 
 std::vector<ConformanceCase> run_test(const TestDescription &test, const Device &device,
                                       const ConformanceOptions &options,
-                                      const std::function<void(const ConformanceCase &)> &told) {
-    return TestRun(test, device, options, told).run();
+                                      const std::function<void(const ConformanceCase &)> &on_case) {
+    return TestRun(test, device, options, on_case).run();
 }
 
 } // namespace opal

@@ -1,5 +1,4 @@
-// With another OpenCL loader in the place of the one that Opal was linked with, the same devices are found and compute
-// the same.
+// Other OpenCL loaders than the one that Opal was linked with find the same devices, which compute the same.
 #include "support/device.h"
 #include "support/scratch.h"
 
@@ -14,7 +13,7 @@ namespace {
 
 struct Answers {
     std::vector<std::string> devices;
-    std::string numbers; // of selftest, which are the same in every run
+    std::string numbers; // the figures of selftest, the same in every run
 };
 
 Answers answers(const std::string &environment) {

@@ -9,7 +9,7 @@ using namespace opal::test;
 
 namespace {
 
-// Oclgrind 21.10 knows few of the intrinsics that optimisation and inlining bring in.
+// Runs opal under Oclgrind, without optimisation: Oclgrind 21.10 lacks many intrinsics that optimisation brings in.
 Outcome simulate(const ScratchFolder &vendors, const std::string &arguments) {
     return run_shell("OCL_ICD_VENDORS=" + vendors.path().string() +
                      " OCLGRIND_DATA_RACES=1 OCLGRIND_BUILD_OPTIONS='-cl-opt-disable -DOPAL_KEEP_CALLS' " OPAL_BINARY

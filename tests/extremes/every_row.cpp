@@ -1,5 +1,4 @@
-// The whole table of `opal extremes` with 2^22 paths a picture, and rays at edges by the hundred million. Of many
-// minutes.
+// The whole table of `opal extremes` with 2^22 paths a picture, and 10^8 rays at edges. It takes many minutes.
 #include "extremes/measure.h"
 #include "support/device.h"
 #include "support/seeds.h"

@@ -54,7 +54,7 @@ const std::vector<Room> rooms = {
     {"probe", {"base", "cl", "scene", "flatten", "device", "stats"}},
     {"densities", {"base", "cl", "scene", "read/nori", "flatten", "device", "stats", "plot", "probe"}},
     {"selftest",
-     {"base", "cl", "scene", "read", "read/nori", "flatten", "device", "image", "stats", "film", "render", "probe",
+     {"base", "cl", "scene", "read/nori", "flatten", "device", "image", "stats", "film", "render", "probe",
       "densities"}},
     {"conformance",
      {"base", "cl", "scene", "read/nori", "strategies", "flatten", "device", "stats", "film", "render", "densities"}},

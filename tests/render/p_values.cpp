@@ -1,4 +1,4 @@
-// The suite's own p-values: uniform where nothing is wrong, or its verdicts mean nothing.
+// The p-values of the tests themselves: they must be uniform where nothing is wrong.
 #include "stats/hypothesis.h"
 #include "support/device.h"
 #include "support/evidence.h"
@@ -38,7 +38,7 @@ TEST_CASE("The p-values of the suite are uniform", "[p_values][stat]") {
     CHECK(result.p_value >= check_level);
 }
 
-// What verify and compare say of one strategy against itself.
+// The test of images that verify and compare use, on two renders by one strategy.
 TEST_CASE("Two seeds of one strategy are not declared different more often than stated", "[p_values][stat]") {
     constexpr unsigned spp = 32;
     constexpr int pairs = 100;
@@ -46,7 +46,7 @@ TEST_CASE("Two seeds of one strategy are not declared different more often than 
                                    Overrides{{"lighting", "mis"}, {"mis", "power"}},
                                    Overrides{{"lighting", "mis"}, {"sampler", "sobol"}});
     CAPTURE(how.begin()->second, how.rbegin()->second);
-    SceneDescription scene = with(gallery(), how);
+    SceneDescription scene = with_strategy(gallery(), how);
     scene.strategy.max_depth = 6;
     Renderer renderer = renderer_of(scene);
     const auto picture = [&](unsigned seed) {

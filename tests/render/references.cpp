@@ -43,7 +43,7 @@ TEST_CASE("Pictures are those of the references, tile by tile", "[references][st
         scene.camera.height = row["size"][1];
         // By the strategy of the least noise: a few thousand samples a tile that hardly ever meet a light prove
         // nothing.
-        scene = with(scene, {{"lighting", "mis"}, {"mis", "power"}});
+        scene = with_strategy(scene, {{"lighting", "mis"}, {"mis", "power"}});
         scene.spp = spp;
         const Film film = render(scene, spp, test_seed(300));
         INFO(name);

@@ -1,4 +1,5 @@
-// `render --time` and `--target-error`: what they reach, that they stay unbiased, and that the stated interval covers.
+// `render --time` and `--target-error`: they stop where they say, stay unbiased, and state intervals that cover the
+// truth.
 #include "render/stop_rules.h"
 
 #include "base/units.h"

@@ -1,6 +1,6 @@
-// Every strategy against every other on one scene: Welch's test per tile and on the whole (the evidence of what
-// disagrees stays in evidence/), by the specialised kernels that a user gets. check_agreement does the same in the
-// general one.
+// Every strategy against every other on one scene, by the specialised kernels that a user gets: Welch's test per tile
+// and on the whole image. Images that disagree stay in evidence/. check_agreement does the same with the general
+// kernel.
 #include "stats/hypothesis.h"
 #include "support/checks.h"
 #include "support/device.h"
@@ -26,7 +26,7 @@ std::string name_of(const Overrides &how) {
 void require_agreement(const SceneDescription &scene, unsigned spp, const std::vector<Overrides> &strategies) {
     std::vector<Image> images;
     for (const Overrides &how : strategies) {
-        SceneDescription chosen = with(scene, how);
+        SceneDescription chosen = with_strategy(scene, how);
         chosen.spp = spp;
         const Film film = render(chosen, spp, test_seed(200 + unsigned(images.size())));
         INFO(name_of(how));

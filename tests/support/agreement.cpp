@@ -1,4 +1,4 @@
-// Estimators that mean the same, held against each other.
+// Strategies with one expectation, held against each other.
 #include "stats/hypothesis.h"
 #include "support/checks.h"
 #include "support/pictures.h"
@@ -58,15 +58,15 @@ Group occlusion_group() {
             {{{"integrator", "ao"}, {"hemisphere", "uniform"}}, {{"integrator", "ao"}, {"hemisphere", "cosine"}}}};
 }
 
-// Means of the luminance, each strategy against every other.
+// The mean luminance of each strategy against that of every other.
 Findings agreement_of(const Group &group, const Sources &sources, unsigned seed) {
-    Shot shot;
-    shot.sources = &sources;
+    RenderSetup setup;
+    setup.sources = &sources;
     std::vector<stats::Sample> samples;
     Findings findings;
     for (Overrides how : group.strategies) {
         how["specialise"] = "off";
-        const Film film = render(with(group.scene, how), group.spp, seed + unsigned(samples.size()), shot);
+        const Film film = render(with_strategy(group.scene, how), group.spp, seed + unsigned(samples.size()), setup);
         samples.push_back(sample_of(film));
         findings.push_back(exact(group.name + ": no invalid samples", film.invalid == 0));
     }

@@ -13,14 +13,14 @@ namespace opal::test {
 
 namespace {
 
-// Renders one strategy after the other in one kernel that decides at run time, so that a check costs one compilation.
+// Renders by the general kernel, which decides about strategies at run time, so that a check compiles one kernel.
 Film render_general(SceneDescription scene, const Overrides &overrides, unsigned spp, unsigned seed,
                     const Sources &sources) {
     Overrides all = overrides;
     all["specialise"] = "off";
-    Shot shot;
-    shot.sources = &sources;
-    return render(with(std::move(scene), all), spp, seed, shot);
+    RenderSetup setup;
+    setup.sources = &sources;
+    return render(with_strategy(std::move(scene), all), spp, seed, setup);
 }
 
 std::string text_of(const Overrides &overrides) {
@@ -72,8 +72,10 @@ void require_all_pass(const Findings &findings) {
 }
 
 std::string text_of(const Finding &finding) {
-    return fmt::format("{}{}{}: {:.4g}, limit {:.4g}", finding.check, finding.subject.empty() ? "" : ", ",
-                       finding.subject, finding.figure, finding.limit);
+    const std::string what = finding.check + (finding.subject.empty() ? "" : ", " + finding.subject);
+    return finding.kind == FigureKind::p_value
+               ? fmt::format("{}: p = {:.2g}", what, finding.figure)
+               : fmt::format("{}: {:.4g}, at most {:.4g}", what, finding.figure, finding.limit);
 }
 
 Finding exact(const std::string &what, bool holds) { return none_wrong(what, !holds); }

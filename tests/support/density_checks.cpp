@@ -1,5 +1,4 @@
 // What is drawn against its density; BSDFs, emitters and the functions below them against formulas in double.
-#include "densities/targets.h"
 #include "extremes/scenes.h"
 #include "selftest/checks.h"
 #include "support/cases.h"
@@ -17,7 +16,8 @@ namespace opal::test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-// For tests: more samples than the selftest takes, and seeds that differ from width to width.
+
+// More samples than selftest takes, and other seeds at each width.
 Effort effort_at(int lanes, unsigned seed) {
     Effort effort;
     effort.samples = 150'000;
@@ -52,18 +52,17 @@ stats::Sample albedo_of(KernelProbe &probe, unsigned id, Vec3 wi, unsigned seed)
     stats::Moments moments;
     const Planes drawn = probe.bsdf_sample(id, wi, random_numbers(probe, 1 << 18, seed));
     for (size_t i = 0; i < drawn.count; i++)
-        moments.add(0.212671 * drawn.at(BSDF_WEIGHT_R, i) + 0.715160 * drawn.at(BSDF_WEIGHT_G, i) +
-                    0.072169 * drawn.at(BSDF_WEIGHT_B, i));
+        moments.add(luminance({drawn.at(BSDF_WEIGHT_R, i), drawn.at(BSDF_WEIGHT_G, i), drawn.at(BSDF_WEIGHT_B, i)}));
     return moments.sample();
 }
 
 // The lights of all cases in one scene, each in a column of the unit square.
 SceneDescription side_by_side(const std::vector<LightCase> &cases) {
-    SceneDescription scene = opal::scene_of({});
+    SceneDescription scene = scene_of({});
     const double width = 1 / double(cases.size());
     for (size_t i = 0; i < cases.size(); i++) {
         const Transform to_column = Transform::translate({double(i) * width, 0, 0}) * Transform::scale({width, 1, 1});
-        const SceneDescription moved = extremes::moved(opal::scene_of({cases[i].mesh}), to_column);
+        const SceneDescription moved = extremes::moved(scene_of({cases[i].mesh}), to_column);
         scene.meshes.push_back(moved.meshes.front());
     }
     return scene;
@@ -99,7 +98,7 @@ Finding densities_agree(const std::string &what, KernelProbe &probe, unsigned se
         wrong += hits.bits(HIT_EMITTER, i) != drawn.bits(LIGHT_ID, i) ||
                  !(std::abs(hits.at(HIT_LIGHT_DENSITY, i) / drawn.at(LIGHT_DENSITY, i) - 1) < 1e-4) ||
                  !(drawn.at(LIGHT_FACING_Z, i) > 0.999);
-    // Points on an edge, to which the ray may see the neighbour.
+    // Of points on an edge the ray may hit the neighbour.
     return exact(what + ": " + std::to_string(wrong) + " of 20000 densities differ", wrong <= 20);
 }
 
@@ -174,7 +173,7 @@ Findings check_refraction(const Sources &sources, unsigned) {
             for (size_t i = 0; i < angles; i++) {
                 const double truth = fresnel_reflectance(cosines[i], near, far);
                 wrong += !(std::abs(found[i] - truth) <=
-                           2e-4 * truth + 2e-7); // near the critical angle an ulp of the sine weighs most
+                           2e-4 * truth + 2e-7); // an ulp of the sine matters most near the critical angle
             }
             findings.push_back(exact("Fresnel's formulas, indices " + std::to_string(near) + " " + std::to_string(far) +
                                          at_width(lanes) + ": " + std::to_string(wrong) + " wrong",
@@ -193,8 +192,8 @@ Findings check_refraction(const Sources &sources, unsigned) {
                 {std::sin(degrees * pi / 180) * 0.6, std::sin(degrees * pi / 180) * 0.8, std::cos(degrees * pi / 180)});
             const Planes drawn = probe.bsdf_sample(0, wi, numbers);
             const Vec3 back = drawn.vec3(BSDF_WO_X, 0), through = drawn.vec3(BSDF_WO_X, 1);
-            // What is reflected weighs its reflectance over the probability that it is drawn with: 1 but for a random
-            // number's 2^-24.
+            // The weight of a reflection is the reflectance over the probability that it is drawn with, a multiple of
+            // 2^-24: nearly 1.
             const double reflectance = fresnel_reflectance(std::abs(wi.z), wi.z > 0 ? 1 : 1.5, wi.z > 0 ? 1.5 : 1);
             const double weight = drawn.at(BSDF_WEIGHT_R, 0);
             straight_wrong += length(back - Vec3{-wi.x, -wi.y, wi.z}) > 1e-6 || weight > 1 ||
@@ -220,7 +219,7 @@ Findings check_refraction(const Sources &sources, unsigned) {
 Findings check_lights(const std::vector<LightCase> &cases, const Sources &sources, unsigned seed) {
     std::vector<std::pair<std::string, SceneDescription>> scenes = {{"all lights", side_by_side(cases)}};
     for (const LightCase &light : cases)
-        scenes.emplace_back(light.name, opal::scene_of({light.mesh}));
+        scenes.emplace_back(light.name, scene_of({light.mesh}));
     Findings findings;
     for (int lanes : tested_lanes())
         for (const auto &[name, scene] : scenes)
@@ -228,9 +227,9 @@ Findings check_lights(const std::vector<LightCase> &cases, const Sources &source
                 for (const char *triangle_choice : {"area", "uniform"}) {
                     if (scene.meshes.size() == 1 && emitter_choice[0] == 'p')
                         continue; // there is no choice of emitters
-                    const FlatScene flat = flatten(with(scene, {{"emitter-choice", emitter_choice},
-                                                                {"triangle-choice", triangle_choice},
-                                                                {"specialise", "off"}}),
+                    const FlatScene flat = flatten(with_strategy(scene, {{"emitter-choice", emitter_choice},
+                                                                         {"triangle-choice", triangle_choice},
+                                                                         {"specialise", "off"}}),
                                                    lanes);
                     const std::string what = name + ", emitters by " + emitter_choice + ", triangles by " +
                                              triangle_choice + at_width(lanes);

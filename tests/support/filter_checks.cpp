@@ -60,10 +60,10 @@ SceneDescription half_lit(double edge) {
 Film filtered(SceneDescription scene, const Filter &filter, unsigned spp, unsigned seed, const Sources &sources) {
     scene.camera.filter = filter;
     scene.spp = spp;
-    Shot shot;
-    shot.sources = &sources;
-    return render(with(std::move(scene), {{"lighting", "bsdf"}, {"rr", "off"}, {"sampler", "stratified"}}), spp, seed,
-                  shot);
+    RenderSetup setup;
+    setup.sources = &sources;
+    return render(with_strategy(std::move(scene), {{"lighting", "bsdf"}, {"rr", "off"}, {"sampler", "stratified"}}),
+                  spp, seed, setup);
 }
 
 double value(const Film &film, int x, int y) {
@@ -71,7 +71,7 @@ double value(const Film &film, int x, int y) {
     return film.weighted.empty() ? film.sum[p][0] / film.count[p] : film.weighted[p][0] / film.weighted[p][3];
 }
 
-// Rows far enough apart to share no sample.
+// f of rows far enough apart to share no sample.
 template <class F> stats::Sample over_rows(const Film &film, F f) {
     stats::Moments moments;
     for (int y = 2; y + 2 < film.height; y += 4)
@@ -95,7 +95,7 @@ Findings check_filters(const Sources &sources, unsigned seed) {
         const double edge = middle + 0.3;
         const Film film = filtered(half_lit(edge), f.filter, spp, seed + 1, sources);
         const double whole = integral(f.weight, -2, 2);
-        if (!film.weighted.empty()) // per sample of a pixel, those of all pixels around together
+        if (!film.weighted.empty()) // a pixel gets the weights of all samples around it
             findings.push_back(p_value(
                 f.name + ": the weights' sum",
                 stats::t_test(over_rows(film,

@@ -24,6 +24,16 @@ Sources mutated(const Sources &sources, const Mutant &mutant) {
     return changed;
 }
 
+std::string write_kernels(const ScratchFolder &folder, const Sources &sources) {
+    for (const auto &[name, text] : sources.files)
+        folder.write("cl/" + name, text);
+    return (folder / "cl").string();
+}
+
+std::string write_kernels(const ScratchFolder &folder, const Mutant &mutant) {
+    return write_kernels(folder, mutated(Sources::embedded(), mutant));
+}
+
 void require_all_killed(const std::vector<Control> &controls, unsigned seed) {
     size_t killed = 0, run = 0;
     for (const Control &control : controls) {

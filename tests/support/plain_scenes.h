@@ -1,4 +1,4 @@
-// Scenes written in C++, and what tests ask of a flattened one.
+// Scenes written in C++, and questions to a flattened one.
 #pragma once
 
 #include "flatten/flat_scene.h"
