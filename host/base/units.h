@@ -1,4 +1,4 @@
-// Amounts as text. Parsing throws an Error that quotes the text and says what is possible.
+// Amounts with units, as text. Parsing throws Error that quotes the text and says what is possible.
 #pragma once
 
 #include <string>

@@ -17,16 +17,16 @@ namespace {
 struct ExtremesOptions {
     std::string device, json, plot, cl_dir;
     std::vector<std::string> names;
-    extremes::How how;
+    extremes::StressSettings settings;
     bool quick = false, list = false;
     std::optional<unsigned> side, spp; // where the command line names them
 };
 
-std::vector<const extremes::Row *> chosen(const std::vector<std::string> &names) {
-    std::vector<const extremes::Row *> rows;
+std::vector<const extremes::StressRow *> chosen(const std::vector<std::string> &names) {
+    std::vector<const extremes::StressRow *> rows;
     for (const std::string &name : names)
-        rows.push_back(&find_row(extremes::rows(), "row", name));
-    for (const extremes::Row &row : extremes::rows())
+        rows.push_back(&find_row(extremes::stress_rows(), "row", name));
+    for (const extremes::StressRow &row : extremes::stress_rows())
         if (names.empty())
             rows.push_back(&row);
     return rows;
@@ -34,7 +34,7 @@ std::vector<const extremes::Row *> chosen(const std::vector<std::string> &names)
 
 int run(ExtremesOptions o) {
     if (o.list) {
-        for (const extremes::Row &row : extremes::rows())
+        for (const extremes::StressRow &row : extremes::stress_rows())
             print("{:<18}{}\n", row.name, row.stretched);
         return 0;
     }
@@ -43,36 +43,32 @@ int run(ExtremesOptions o) {
         if (!file.empty())
             check_writable(file);
     if (o.quick)
-        o.how.side = o.how.spp = 32;
-    o.how.side = o.side.value_or(o.how.side);
-    o.how.spp = o.spp.value_or(o.how.spp);
+        o.settings.side = o.settings.spp = 32;
+    o.settings.side = o.side.value_or(o.settings.side);
+    o.settings.spp = o.spp.value_or(o.settings.spp);
     const DevicePick pick = pick_device(o.device, list_devices());
     lanes_for(pick.info, 0, MathMode::double_precision); // refuses a device without doubles before anything is rendered
     const Device device = open_device(pick.info);
     const Sources sources = load_sources(o.cl_dir);
-    o.how.sources = &sources;
-    info(fmt::format("device  {}, {} x {} pixels, {} samples each, seed {}", text_of(pick), o.how.side, o.how.side,
-                     o.how.spp, o.how.seed));
+    o.settings.sources = &sources;
+    info(fmt::format("device  {}, {} x {} pixels, {} samples each, seed {}", text_of(pick), o.settings.side,
+                     o.settings.side, o.settings.spp, o.settings.seed));
 
-    std::vector<extremes::Sweep> sweeps;
-    nlohmann::json report = {{"device", pick.info.name},
-                             {"driver", pick.info.driver},
-                             {"side", o.how.side},
-                             {"spp", o.how.spp},
-                             {"seed", o.how.seed},
-                             {"version", OPAL_VERSION},
+    std::vector<extremes::StressResult> results;
+    nlohmann::json report = {{"device", pick.info.name},       {"driver", pick.info.driver}, {"side", o.settings.side},
+                             {"spp", o.settings.spp},          {"seed", o.settings.seed},    {"version", OPAL_VERSION},
                              {"rows", nlohmann::json::array()}};
     bool kept = true;
-    for (const extremes::Row *row : rows) {
-        sweeps.push_back(extremes::sweep(*row, device, o.how, o.quick ? 3 : 1));
-        print_text(extremes::table_of(sweeps.back()));
-        report["rows"].push_back(extremes::json_of(sweeps.back()));
-        kept = kept && sweeps.back().kept;
+    for (const extremes::StressRow *row : rows) {
+        results.push_back(extremes::run_stress(*row, device, o.settings, o.quick ? 3 : 1));
+        print_text(extremes::table_of(results.back()));
+        report["rows"].push_back(extremes::json_of(results.back()));
+        kept = kept && results.back().kept;
     }
     if (!o.json.empty())
         write_safely(o.json, dump(report, 2) + "\n");
     if (!o.plot.empty())
-        write_safely(o.plot, extremes::svg_of(sweeps));
+        write_safely(o.plot, extremes::svg_of(results));
     return kept ? 0 : 1;
 }
 
@@ -92,13 +88,13 @@ Command extremes_command() {
                      .target = &o->side,
                      .help = "Pixels along each side",
                      .check = Range{1, 4096},
-                     .default_text = std::to_string(o->how.side)},
+                     .default_text = std::to_string(o->settings.side)},
                     {.flags = "--spp",
                      .target = &o->spp,
                      .help = "Samples of each pixel",
                      .check = Range{1, 1 << 24},
-                     .default_text = std::to_string(o->how.spp)},
-                    {.flags = "--seed", .target = &o->how.seed, .help = "Of the random numbers"},
+                     .default_text = std::to_string(o->settings.spp)},
+                    {.flags = "--seed", .target = &o->settings.seed, .help = "Of the random numbers"},
                     {.flags = "--json", .target = &o->json, .help = "All figures", .type = "FILE"},
                     {.flags = "--plot", .target = &o->plot, .help = "SVG of error against parameter", .type = "FILE"},
                     cl_dir_row(o->cl_dir),

@@ -7,7 +7,7 @@ namespace opal {
 
 struct RenderedFilm {
     Film film;
-    Stopped stopped;
+    StopResult stopped;
     double compile_seconds = 0, kernel_seconds = 0; // the latter of the film's samples
 };
 

@@ -26,7 +26,7 @@ double samples_per_second(const FilmStatistics &s, const RenderSeconds &seconds)
 json strategy_json(const SceneDescription &scene) {
     json j = {{"integrator", scene.integrator_type}};
     for (const StrategyOption &option : strategy_options()) {
-        if (option.name == "lanes") // the report says how many there were
+        if (option.name == "lanes") // the report has its own key, the number that was used
             continue;
         const std::string text = option.text(scene.strategy);
         if (option.xml_tag == "float")
@@ -84,7 +84,7 @@ nlohmann::json RenderReport::json() const {
     return j;
 }
 
-StopReport report_stop(const StopRule &rule, const Stopped &stopped, const RenderReport &render) {
+StopReport report_stop(const StopRule &rule, const StopResult &stopped, const RenderReport &render) {
     const FilmStatistics s = statistics_of(render.film);
     StopReport report{rule, stopped, render.spp(), render.seconds.render};
     report.relative_error = s.empty_pixels         ? INFINITY

@@ -1,4 +1,4 @@
-// What a render tells of itself: one JSON object, for --json and for the EXR's header.
+// The report of a render: one JSON object, for --json and for the header of the EXR.
 #pragma once
 
 #include "device/context.h"
@@ -13,11 +13,12 @@
 
 namespace opal {
 
+// Seconds of the stages of a render, in wall time except for `render`, which is kernel time.
 struct RenderSeconds {
-    double load = 0, bvh = 0, compile = 0, render = 0 /* kernel time */, write = 0;
+    double load = 0, bvh = 0, compile = 0, render = 0, write = 0;
 };
 
-// One key an axis, as the command line names choices, and the numbers that go with them.
+// The strategy: a key for each axis with the choice's name on the command line, and the numeric options.
 nlohmann::json strategy_json(const SceneDescription &scene);
 
 // A finished render: text() is its line for people, json() all there is.
@@ -39,7 +40,7 @@ struct RenderReport {
 struct StopReport {
     static constexpr double confidence = 0.95;
     StopRule rule;
-    Stopped stopped;
+    StopResult stopped;
     double spp = 0, seconds = 0; // samples a pixel and kernel time of the film
     double relative_error = 0;   // of the mean luminance, as its standard error; infinite: unknown
     std::optional<std::array<double, 2>> interval{};
@@ -49,12 +50,12 @@ struct StopReport {
     std::string warning() const; // empty where the rule was met
     nlohmann::json json() const;
 };
-StopReport report_stop(const StopRule &rule, const Stopped &stopped, const RenderReport &render);
+StopReport report_stop(const StopRule &rule, const StopResult &stopped, const RenderReport &render);
 
 // What the image lacks: invalid samples, pixels without one. seconds: the film's kernel time.
 std::vector<std::string> film_warnings(const Film &film, double seconds);
 
-// A report as header attributes of an image.
+// Adds the report to the image's metadata, which become header attributes: "opal.KEY" for each key.
 void add_metadata(Image &image, const nlohmann::json &report, const std::string &command_line);
 
 } // namespace opal

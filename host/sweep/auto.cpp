@@ -12,8 +12,8 @@ AutoChoice choose_strategy(const SceneDescription &scene, const Device &device, 
     const std::vector<Candidate> candidates = parse_strategies(scene, {"course"}, {});
     std::vector<Pilot> pilots;
     for (const Candidate &c : candidates) {
-        Measured measured(device, c, sources, device.info.type == "cpu" ? Clock::cpu : Clock::kernel);
-        pilots.push_back(run_pilot(measured, seed, pilot_seconds));
+        CompiledStrategy strategy(device, c, sources, device.info.type == "cpu" ? Clock::cpu : Clock::kernel);
+        pilots.push_back(run_pilot(strategy, seed, pilot_seconds));
     }
     const std::vector<double> costs = pilot_costs(pilots);
     AutoChoice choice;

@@ -168,7 +168,7 @@ const std::vector<Control> films = {
 
 } // namespace
 
-TEST_CASE("A mutant whose text is not there is an error", "[mutants]") {
+TEST_CASE("A mutant whose text is not there is an error", "[mutants][long]") {
     const Mutant mutant{"none", "math.cl", "no such text", ""};
     CHECK_THROWS_WITH(mutated(Sources::embedded(), mutant),
                       Catch::Contains("mutant \"none\"") && Catch::Contains("cl/math.cl"));
@@ -176,8 +176,16 @@ TEST_CASE("A mutant whose text is not there is an error", "[mutants]") {
     CHECK_THROWS_AS(mutated(Sources::embedded(), {"nowhere", "maths.cl", "real", ""}), Error);
 }
 
-TEST_CASE("Every mutant that furnaces show is killed", "[mutants]") { require_all_killed(furnaces, test_seed(30)); }
-TEST_CASE("Every mutant of the lights is killed", "[mutants]") { require_all_killed(lights, test_seed(31)); }
-TEST_CASE("Every mutant of the strategies is killed", "[mutants]") { require_all_killed(strategies, test_seed(32)); }
-TEST_CASE("Every mutant of discrete choices is killed", "[mutants]") { require_all_killed(choices, test_seed(34)); }
-TEST_CASE("Every mutant of the film is killed", "[mutants]") { require_all_killed(films, test_seed(33)); }
+TEST_CASE("Every mutant that furnaces show is killed", "[mutants][stat][long]") {
+    require_all_killed(furnaces, test_seed(30));
+}
+TEST_CASE("Every mutant of the lights is killed", "[mutants][stat][long]") {
+    require_all_killed(lights, test_seed(31));
+}
+TEST_CASE("Every mutant of the strategies is killed", "[mutants][stat][long]") {
+    require_all_killed(strategies, test_seed(32));
+}
+TEST_CASE("Every mutant of discrete choices is killed", "[mutants][stat][long]") {
+    require_all_killed(choices, test_seed(34));
+}
+TEST_CASE("Every mutant of the film is killed", "[mutants][stat][long]") { require_all_killed(films, test_seed(33)); }

@@ -14,10 +14,10 @@ namespace opal::test {
 
 const Device &device();
 
-// 1 and the device's own width, the two that every kernel test is run at.
+// The widths of every kernel test: 1 and the device's own.
 std::vector<int> tested_lanes();
 
-// All features on and every axis decided at run time, but for what is named: {"tree", 0}.
+// All features on but those named in `except` ({"tree", false}), every axis decided at run time.
 Features all_features(const std::map<std::string, bool> &except = {});
 
 // Opal's own sources with those below tests/device/ as "tests/NAME.cl" among them.

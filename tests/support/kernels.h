@@ -15,7 +15,7 @@ cl::Program program(const std::string &kernels, int lanes, const Features &featu
 cl::Program program_of(const std::string &text, int lanes, const Features &features = all_features(),
                        MathMode math = MathMode::precise);
 
-// A kernel's output: what a test passes as Output<T>{count}, and reads after run().
+// A kernel's output of `count` values: an argument of run(), which read() then copies back.
 template <class T> struct Output {
     size_t count;
     cl::Buffer buffer = make_zeros<T>(device(), count, "a test's output");
