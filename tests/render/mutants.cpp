@@ -1,5 +1,6 @@
 // Negative controls of rendering: wrong kernels that the checks must reject.
 #include "support/mutants.h"
+#include "base/error.h"
 #include "support/device.h"
 #include "support/seeds.h"
 
