@@ -181,7 +181,7 @@ RayTimes RayBench::time(const RaySet &set, int runs) {
         tests[i % tests_kinds] += counted[i] / double(count);
     const bool tree = scene_.features["tree"];
     times.node_tests = tests[0] + (tree ? 1 : 0); // the root is met by all
-    times.triangle_tests = 8 * tests[1] + (scene_.features["listed"] ? scene_.listed_triangles : 0);
+    times.triangle_tests = 8 * tests[1] + (scene_.features["listed"] ? scene_.face_list_triangles : 0);
     return times;
 }
 

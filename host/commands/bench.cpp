@@ -45,7 +45,7 @@ json scene_json(const SceneDescription &scene, const FlatScene &flat, const Devi
             {"lanes", lanes},
             {"math", name_of(scene.strategy.math)},
             {"triangles", flat.triangles.size()},
-            {"listed_triangles", flat.listed_triangles},
+            {"listed_triangles", flat.face_list_triangles},
             {"nodes", flat.nodes.size()},
             {"blocks", flat.blocks.size()},
             {"hierarchy_bytes", bytes},
@@ -128,7 +128,7 @@ int run_rays(const RayOptions &o) {
 
     json report = scene_json(scene, flat, pick.info, build.lanes);
     info(fmt::format("scene   {}: {} triangles, {} of them listed beside the tree", scene.file.string(),
-                     flat.triangles.size(), flat.listed_triangles));
+                     flat.triangles.size(), flat.face_list_triangles));
     info(fmt::format("device  {} (driver {}; {}), {} lanes", pick.info.name, pick.info.driver, pick.reason,
                      build.lanes));
     info(fmt::format("tree    {} nodes, {} blocks, {} ({:.1f} bytes a triangle), SAH cost {:.4g}, built in {:.3g} s",

@@ -114,8 +114,8 @@ void print_buffers(const FlatScene &flat) {
     table("blocks", flat.blocks);
     table("triangles", flat.triangles);
     table("normals", flat.normals);
-    table("listed vertices", flat.listed_vertices);
-    table("listed faces", flat.listed_faces);
+    table("listed vertices", flat.face_vertices);
+    table("listed faces", flat.faces);
     table("meshes", flat.meshes);
     table("bsdfs", flat.bsdfs);
     table("emitters", flat.emitters);

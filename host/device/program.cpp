@@ -58,7 +58,7 @@ std::string program_text(const Features &features, const BuildOptions &options, 
         "#define LANES {}\n#define OPAL_DOUBLE {}\n#define OPAL_FAST {}\n#define OPAL_COUNT_TESTS {}\n", options.lanes,
         int(options.math == MathMode::double_precision), int(options.math == MathMode::fast), int(options.count_tests));
     for (const char *stage : {"traversal", "sampling"})
-        text += fmt::format("#define OPAL_TWICE_{} {}\n", stage, int(options.twice == stage));
+        text += fmt::format("#define OPAL_REPEAT_{} {}\n", stage, int(options.twice == stage));
     if (!options.note.empty())
         text += fmt::format("typedef int opal_note_{};\n", options.note); // drivers see through comments and defines
     for (const Feature &feature : features.list)

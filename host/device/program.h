@@ -25,16 +25,16 @@ int lanes_for(const DeviceInfo &info, int wanted, MathMode math);
 
 // The sources below cl/, embedded in the binary or read from --cl-dir.
 struct Sources {
-    std::map<std::string, std::string> files; // "math.cl" -> text
+    std::map<std::string, std::string> files; // "core/math.cl" -> text
     static const Sources &embedded();
     static Sources from_folder(const std::string &folder);
     // Text of `file` for a kernel of so many lanes, with every #include "x" expanded once, in place, between #line
-    // directives. Files below one_lane/ are left out where there are more lanes. Error: file:line of an include that is
-    // not there, and what is.
+    // directives. Files in a folder many_lanes/ are left out of programs of one lane, those in one_lane/ of all others.
+    // Error: file:line of an include that is not there, and what is.
     std::string expand(const std::string &file, int lanes) const;
 };
 
-// Defines (every feature, every axis, LANES, OPAL_DOUBLE, OPAL_FAST, OPAL_COUNT_TESTS, OPAL_TWICE_*) followed by the
+// Defines (every feature, every axis, LANES, OPAL_DOUBLE, OPAL_FAST, OPAL_COUNT_TESTS, OPAL_REPEAT_*) followed by the
 // expanded sources.
 std::string program_text(const Features &features, const BuildOptions &options, const Sources &sources);
 

@@ -57,9 +57,10 @@ public:
     std::string take() { return std::move(text_); }
 
 private:
-    // What is there already, and what only programs of one lane need.
+    // What is there already, and what is for programs of another width.
     bool left_out(const std::string &name) const {
-        return done_.count(name) != 0 || (lanes_ != 1 && name.starts_with("one_lane/"));
+        const char *other_width = lanes_ == 1 ? "many_lanes/" : "one_lane/";
+        return done_.count(name) != 0 || name.find(other_width) != std::string::npos;
     }
 
     void append_line(const std::string &name, const std::string &line, int number) {

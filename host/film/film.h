@@ -12,7 +12,7 @@ struct InvalidSample {
     unsigned x, y, sample;
 }; // was NaN or infinite
 
-// Sums in double, as read back from the device's pairs of floats (cl/film.cl). Pixels row by row, top first.
+// Sums in double, as read back from the device's pairs of floats (cl/film/film.cl). Pixels row by row, top first.
 struct Film {
     int width = 0, height = 0;
     std::vector<std::array<double, 3>> sum;      // of R, G, B

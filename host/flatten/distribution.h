@@ -9,7 +9,7 @@
 namespace opal {
 
 // p rounded up to the numbers that a random number of 24 bits may be below: u < p is drawn with this probability
-// (cl/rng.cl).
+// (cl/core/rng.cl).
 double drawn_probability(double p);
 
 // Draw row i = floor(n k1 2^-b) by b random bits k1, keep it if k2 2^-24 < accept[i] by 24 others, else take other[i]:
@@ -22,7 +22,8 @@ struct AliasTable {
 
 // The alias method of Vose 1991, "A linear algorithm for generating random numbers with a given distribution".
 // Weights are finite, not negative, and one is positive; an index of weight 0 is never drawn, every other is. No
-// weights: empty tables. b is 24, or 32 where there are more than OPAL_ALIAS_ROWS weights (cl/emitter.cl draws).
+// weights: empty tables. b is 24, or 32 where there are more than OPAL_ALIAS_ROWS weights (cl/emitters/interface.cl
+// draws).
 AliasTable build_alias_table(std::span<const double> weights);
 
 } // namespace opal

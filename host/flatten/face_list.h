@@ -8,12 +8,12 @@
 namespace opal {
 
 // Ids of the triangles to list: all of a scene that is small enough, else the largest, whose boxes have at least
-// LISTED_SHARE of the surface of the scene's box. Two faces are tested side by side in the time of one: the first
-// FIRST_LISTED triangles, as many as two quadrilaterals have, need FIRST_SHARE only. At most OPAL_LISTED_TRIANGLES,
-// with OPAL_LISTED_VERTICES distinct vertices.
-std::vector<uint> choose_listed(const TriangleSoup &soup);
-constexpr double LISTED_SHARE = 0.05, FIRST_SHARE = 0.01;
-constexpr std::size_t FIRST_LISTED = 4;
+// FACE_LIST_SHARE of the surface of the scene's box. Two faces are tested side by side in the time of one: the first
+// FIRST_TRIANGLES triangles, as many as two quadrilaterals have, need FIRST_SHARE only. At most
+// OPAL_FACE_LIST_TRIANGLES, with OPAL_FACE_LIST_VERTICES distinct vertices.
+std::vector<uint> choose_face_list(const TriangleSoup &soup);
+constexpr double FACE_LIST_SHARE = 0.05, FIRST_SHARE = 0.01;
+constexpr std::size_t FIRST_TRIANGLES = 4;
 
 // A triangle A B C and, where both make a convex quadrilateral A B D C, a second one D C B: their ids, OPAL_NONE for no
 // second one.
@@ -25,13 +25,13 @@ struct Face {
 // begin at A and at D.
 std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, std::vector<Triangle> &triangles);
 
-// The tree over the triangles that are in none of `listed`.
-void plant_tree(const TriangleSoup &soup, const std::vector<Face> &listed, FlatScene &scene);
+// The tree over the triangles that are in none of `faces`.
+void plant_tree(const TriangleSoup &soup, const std::vector<Face> &faces, FlatScene &scene);
 
-// Blocks, distinct vertices and edges of the listed faces. Those that no ray from a point of the scene
+// Fills the blocks, the vertices and the records of the face list. Faces that no ray from a point of the scene
 // to one of `lights` (or between them) crosses come last: with all triangles and lights on one side, or with all lights
 // in their plane.
-void list_faces(const TriangleSoup &soup, std::vector<Face> listed, const std::vector<std::array<float, 3>> &lights,
+void list_faces(const TriangleSoup &soup, std::vector<Face> faces, const std::vector<std::array<float, 3>> &lights,
                 FlatScene &scene);
 
 } // namespace opal

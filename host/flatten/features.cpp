@@ -72,17 +72,17 @@ public:
     }
 
     Decision listed() const {
-        if (lanes < LISTED_LANES)
-            return {false, fmt::format("pays from {} lanes on", LISTED_LANES)};
-        if (scene.listed_faces.empty())
+        if (lanes < FACE_LIST_LANES)
+            return {false, fmt::format("pays from {} lanes on", FACE_LIST_LANES)};
+        if (scene.faces.empty())
             return {false, "no triangle is large enough to be tested outside the tree"};
-        return {true, fmt::format("{} of {}: tested against all lanes at once", scene.listed_triangles,
+        return {true, fmt::format("{} of {}: tested against all lanes at once", scene.face_list_triangles,
                                   plural(scene.triangles.size(), "triangle", "triangles"))};
     }
 
     Decision tree() const {
-        const std::size_t inside = scene.triangles.size() - scene.listed_triangles;
-        if (inside == 0 && lanes >= LISTED_LANES)
+        const std::size_t inside = scene.triangles.size() - scene.face_list_triangles;
+        if (inside == 0 && lanes >= FACE_LIST_LANES)
             return {false, scene.triangles.empty() ? "there are no triangles" : "all triangles are listed"};
         return {true, plural(inside, "triangle", "triangles")};
     }

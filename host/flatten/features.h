@@ -5,7 +5,7 @@
 
 namespace opal {
 
-constexpr int LISTED_LANES = 4; // from this width on testing each of a few triangles beats a tree
+constexpr int FACE_LIST_LANES = 4; // from this width on testing each of a few triangles beats a tree
 
 // Everything in `scene` but its features must be there. With strategy.specialise off, all features are on and all axes
 // -1.

@@ -4,8 +4,8 @@
 #include "base/math.h"
 #include "bsdfs/list.h"
 #include "emitters/list.h"
+#include "kernels/features.h"
 #include "scene/scene.h"
-#include "shared/features.h"
 #include "shared/types.h"
 
 #include <string>
@@ -37,10 +37,10 @@ struct FlatScene {
     std::vector<BvhNode> nodes; // empty: no tree
     std::vector<TriangleBlock> blocks;
     std::vector<Triangle> triangles;
-    std::vector<float> normals;           // 3 each
-    std::vector<float> listed_vertices;   // 3 each, distinct
-    std::vector<ListedFace> listed_faces; // beside the tree
-    uint listed_triangles = 0;            // that these faces stand for
+    std::vector<float> normals;       // 3 each
+    std::vector<float> face_vertices; // 3 each, distinct
+    std::vector<FaceRecord> faces;    // beside the tree
+    uint face_list_triangles = 0;     // that these faces stand for
     std::vector<MeshRecord> meshes;
     std::vector<BsdfRecord> bsdfs; // equal records are shared
     std::vector<EmitterRecord> emitters;

@@ -90,17 +90,17 @@ std::vector<std::array<float, 3>> light_points(const SceneDescription &descripti
     return points;
 }
 
-void build_acceleration(TriangleSoup &soup, const std::vector<std::array<float, 3>> &lights, bool with_listed,
+void build_acceleration(TriangleSoup &soup, const std::vector<std::array<float, 3>> &lights, bool with_face_list,
                         FlatScene &scene) {
     const auto start = std::chrono::steady_clock::now();
-    const std::vector<uint> ids = choose_listed(soup);
-    std::vector<Face> listed =
-        pair_up(ids, soup, scene.triangles); // at all widths, so that the same numbers pick the same points of lights
-    if (!with_listed)
-        listed.clear();
-    if (listed.empty() || ids.size() < soup.corners.size())
-        plant_tree(soup, listed, scene);
-    list_faces(soup, std::move(listed), lights, scene);
+    const std::vector<uint> ids = choose_face_list(soup);
+    // Paired at every width: pairing renumbers corners, and the points of lights depend on them.
+    std::vector<Face> faces = pair_up(ids, soup, scene.triangles);
+    if (!with_face_list)
+        faces.clear();
+    if (faces.empty() || ids.size() < soup.corners.size())
+        plant_tree(soup, faces, scene);
+    list_faces(soup, std::move(faces), lights, scene);
     scene.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -116,7 +116,7 @@ FlatScene flatten(const SceneDescription &description, int lanes) {
     gather_bsdfs(description, scene);
     TriangleSoup soup = gather_triangles(description, frame, scene);
     build_acceleration(soup, light_points(description, frame, soup, scene.triangles),
-                       lanes >= LISTED_LANES && description.strategy.specialise, scene);
+                       lanes >= FACE_LIST_LANES && description.strategy.specialise, scene);
     gather_emitters(description, frame, soup, scene);
     scene.settings.emitter_count = uint(scene.emitters.size());
     scene.features = find_features(description, scene, lanes);

@@ -45,15 +45,15 @@ TEST_CASE("What computes wrong is found", "[selftest]") {
         const char *group, *file, *from, *to, *found;
     };
     const Mutant mutants[] = {
-        {"basics", "math.cl", "R(8.3333333333333333e-03)", "R(8.3233333333333333e-03)", "sin_2pi"},
-        {"basics", "rng.cl", "0x53a22864u", "0x53a22865u", "Sobol"},
-        {"warps", "warp.cl", "sqrt(u.x * (2 - u.x))", "sqrt(u.x)", "warps: samples"},
+        {"basics", "core/math.cl", "R(8.3333333333333333e-03)", "R(8.3233333333333333e-03)", "sin_2pi"},
+        {"basics", "core/rng.cl", "0x53a22864u", "0x53a22865u", "Sobol"},
+        {"warps", "core/warp.cl", "sqrt(u.x * (2 - u.x))", "sqrt(u.x)", "warps: samples"},
         {"bsdfs", "bsdfs/microfacet.cl", "(4 * fabs(v3_dot(h, wo)));", "(4.1f * fabs(v3_dot(h, wo)));",
          "BSDFs: samples"},
         {"bsdfs", "bsdfs/dielectric.cl", "square(boundary.inverse_eta)", "boundary.inverse_eta", "mirror, dielectric"},
         {"lights", "emitters/mesh.cl", "folded ? 1 - point.x", "folded ? point.x", "lights: points"},
-        {"rays", "one_lane/walk.cl", "near_x = inverse.x < 0", "near_x = inverse.x > 0", "tree: hits"},
-        {"images", "lighting.cl", "wo.z * per_density", "per_density", "furnace"},
+        {"rays", "trace/one_lane/walk.cl", "near_x = inverse.x < 0", "near_x = inverse.x > 0", "tree: hits"},
+        {"images", "integrators/steps.cl", "wo.z * inverse_pdf", "inverse_pdf", "furnace"},
     };
     for (const Mutant &m : mutants) {
         const Outcome outcome = selftest_of_mutant(m.group, m.file, m.from, m.to);
@@ -66,12 +66,12 @@ TEST_CASE("What computes wrong is found", "[selftest]") {
 }
 
 TEST_CASE("A crash, a hang and kernels that do not build are told", "[selftest]") {
-    const char *const output = "planes[plane * stride + base + lane] = (float)lanes[lane];";
-    const Outcome crash = selftest_of_mutant("warps", "planes.cl", output,
+    const char *const output = "columns[column * stride + base + lane] = (float)lanes[lane];";
+    const Outcome crash = selftest_of_mutant("warps", "kernels/columns.cl", output,
                                              "*(volatile global float *)(8 + get_global_id(0)) = (float)lanes[lane];");
     CHECK(crash.exit_code == 1);
     CHECK_THAT(crash.out, Catch::Contains("warps at 1 precise: crashed (Segmentation fault)"));
-    const Outcome broken = selftest_of_mutant("warps", "planes.cl", output, "nothing;");
+    const Outcome broken = selftest_of_mutant("warps", "kernels/columns.cl", output, "nothing;");
     CHECK(broken.exit_code == 1);
     CHECK_THAT(broken.out, Catch::Contains("the kernels do not build"));
     const ScratchFolder folder;

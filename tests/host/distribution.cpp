@@ -14,7 +14,7 @@ using namespace opal;
 
 namespace {
 
-// Upper word of the product, as the device takes rows (cl/emitter.cl).
+// Upper word of the product, as the device takes rows (cl/emitters/interface.cl).
 unsigned row_of(std::uint64_t number, int bits, std::uint64_t rows) {
     return unsigned((number << (32 - bits)) * rows >> 32);
 }

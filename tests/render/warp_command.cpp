@@ -50,9 +50,9 @@ TEST_CASE("A wrong density is rejected", "[warp_command]") {
         REQUIRE(place != std::string::npos);
         folder.write("cl/" + file, text.replace(place, from.size(), to));
     };
-    replace("warp.cl", "v3 square_to_cosine_hemisphere(v2 u) { return direction_of(sqrt(1 - u.x), sqrt(u.x)",
+    replace("core/warp.cl", "v3 square_to_cosine_hemisphere(v2 u) { return direction_of(sqrt(1 - u.x), sqrt(u.x)",
             "v3 square_to_cosine_hemisphere(v2 u) { return direction_of(1 - u.x, sqrt(u.x * (2 - u.x))");
-    replace("emitter.cl", "unit_real((u).y) < GATHER(real, (scene)->table, (first) + row_, .accept)",
+    replace("emitters/interface.cl", "unit_real((u).y) < GATHER(real, (scene)->table, (first) + row_, .accept)",
             "(u).y < 0x80000000u");
     const std::string mutated = " --cl-dir " + (folder / "cl").string();
     CHECK(warp("cosine_hemisphere" + mutated).exit_code == 1);

@@ -1,0 +1,24 @@
+// What a kernel may be compiled with or without. flatten decides each for a scene; every one is always defined, 0 or 1,
+// as OPAL_HAS_name, in this order. Device code asks `if (OPAL_HAS_name)`, so that each variant is parsed and
+// type-checked.
+#ifndef OPAL_FEATURES_H
+#define OPAL_FEATURES_H
+
+#include "bsdfs/list.h"
+#include "emitters/list.h"
+
+#define OPAL_BSDF_FEATURE(name) OPAL_FEATURE_ROW(bsdf_##name)
+#define OPAL_EMITTER_FEATURE(name) OPAL_FEATURE_ROW(emitter_##name)
+
+// Define OPAL_FEATURE_ROW(name) and expand this.
+#define OPAL_FEATURES \
+    OPAL_BSDFS(OPAL_BSDF_FEATURE) \
+    OPAL_EMITTERS(OPAL_EMITTER_FEATURE) \
+    OPAL_FEATURE_ROW(many_emitters)    /* several emitters, one of which is chosen; else emitter 0 is meant */ \
+    OPAL_FEATURE_ROW(shading_normals)  /* some mesh interpolates vertex normals */ \
+    OPAL_FEATURE_ROW(listed)           /* the face list, tested by all lanes: a tiny scene, or the largest faces */ \
+    OPAL_FEATURE_ROW(tree)             /* a tree of the other triangles, walked lane by lane */ \
+    OPAL_FEATURE_ROW(large_tree)       /* the tree is larger than a core's caches: walks prefetch waiting children */ \
+    OPAL_FEATURE_ROW(wide_filter)      /* the pixel filter reaches beyond its pixel */
+
+#endif
