@@ -6,6 +6,10 @@
 // cd, as long as both products are rounded alike. Hence no contraction to fma in edge(). A zero counts as inside for
 // both neighbours, so that no ray passes between two triangles that share an edge.
 #include "core/lanes.cl"
+#include "shared/types.h"
+
+// Offset in floats, from the coordinates of a block's corner 0, of those of corner c on the same axis (TriangleBlock).
+#define CORNER(c) ((c) * 3 * OPAL_WIDTH)
 
 static real edge(real ax, real ay, real bx, real by) {
 #pragma OPENCL FP_CONTRACT OFF

@@ -3,6 +3,7 @@
 #include "shared/types.h"
 #include "trace/many_lanes/eight.cl"
 #include "trace/rays.cl"
+#include "trace/triangle.cl"
 
 // As edge() in trace/triangle.cl.
 static real8 edge8(real8 ax, real8 ay, real8 bx, real8 by) {
@@ -20,16 +21,15 @@ typedef struct {
 } BlockTest;
 
 static BlockTest intersect_block(global const TriangleBlock *block, const LaneRay *ray) {
-    uint kx = ray->kx, ky = ray->ky, kz = ray->kz;
+    global const float *x = block->vertex[0][ray->kx], *y = block->vertex[0][ray->ky], *z = block->vertex[0][ray->kz];
     real1 ox = ray->sheared_o[0], oy = ray->sheared_o[1], oz = ray->sheared_o[2];
-    real8 az = load8(block->vertex[0][kz]) - oz, bz = load8(block->vertex[1][kz]) - oz;
-    real8 cz = load8(block->vertex[2][kz]) - oz;
-    real8 ax = mul_add(-ray->shear_x, az, load8(block->vertex[0][kx]) - ox);
-    real8 ay = mul_add(-ray->shear_y, az, load8(block->vertex[0][ky]) - oy);
-    real8 bx = mul_add(-ray->shear_x, bz, load8(block->vertex[1][kx]) - ox);
-    real8 by = mul_add(-ray->shear_y, bz, load8(block->vertex[1][ky]) - oy);
-    real8 cx = mul_add(-ray->shear_x, cz, load8(block->vertex[2][kx]) - ox);
-    real8 cy = mul_add(-ray->shear_y, cz, load8(block->vertex[2][ky]) - oy);
+    real8 az = load8(z + CORNER(0)) - oz, bz = load8(z + CORNER(1)) - oz, cz = load8(z + CORNER(2)) - oz;
+    real8 ax = mul_add(-ray->shear_x, az, load8(x + CORNER(0)) - ox);
+    real8 ay = mul_add(-ray->shear_y, az, load8(y + CORNER(0)) - oy);
+    real8 bx = mul_add(-ray->shear_x, bz, load8(x + CORNER(1)) - ox);
+    real8 by = mul_add(-ray->shear_y, bz, load8(y + CORNER(1)) - oy);
+    real8 cx = mul_add(-ray->shear_x, cz, load8(x + CORNER(2)) - ox);
+    real8 cy = mul_add(-ray->shear_y, cz, load8(y + CORNER(2)) - oy);
     real8 a = edge8(cx, cy, bx, by), b = edge8(ax, ay, cx, cy), c = edge8(bx, by, ax, ay);
     mask8 inside = real8_min(a, real8_min(b, c)) >= 0 | real8_max(a, real8_max(b, c)) <= 0;
 

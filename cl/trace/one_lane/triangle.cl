@@ -10,14 +10,13 @@ typedef struct { real1 distance, determinant, b, c; bool inside; } TriangleTest;
 
 static TriangleTest intersect_triangle(global const TriangleBlock *block, uint i, const LaneRay *r) {
     real1 ox = r->sheared_o[0], oy = r->sheared_o[1], oz = r->sheared_o[2];
-    real1 az = block->vertex[0][r->kz][i] - oz, bz = block->vertex[1][r->kz][i] - oz;
-    real1 cz = block->vertex[2][r->kz][i] - oz;
-    real1 ax = mul_add(-r->shear_x, az, block->vertex[0][r->kx][i] - ox);
-    real1 ay = mul_add(-r->shear_y, az, block->vertex[0][r->ky][i] - oy);
-    real1 bx = mul_add(-r->shear_x, bz, block->vertex[1][r->kx][i] - ox);
-    real1 by = mul_add(-r->shear_y, bz, block->vertex[1][r->ky][i] - oy);
-    real1 cx = mul_add(-r->shear_x, cz, block->vertex[2][r->kx][i] - ox);
-    real1 cy = mul_add(-r->shear_y, cz, block->vertex[2][r->ky][i] - oy);
+    // One pointer an axis: nine addresses by kx, ky and kz would take 20 registers more on NVIDIA.
+    global const float *x = block->vertex[0][r->kx] + i, *y = block->vertex[0][r->ky] + i;
+    global const float *z = block->vertex[0][r->kz] + i;
+    real1 az = z[CORNER(0)] - oz, bz = z[CORNER(1)] - oz, cz = z[CORNER(2)] - oz;
+    real1 ax = mul_add(-r->shear_x, az, x[CORNER(0)] - ox), ay = mul_add(-r->shear_y, az, y[CORNER(0)] - oy);
+    real1 bx = mul_add(-r->shear_x, bz, x[CORNER(1)] - ox), by = mul_add(-r->shear_y, bz, y[CORNER(1)] - oy);
+    real1 cx = mul_add(-r->shear_x, cz, x[CORNER(2)] - ox), cy = mul_add(-r->shear_y, cz, y[CORNER(2)] - oy);
     real1 a = edge(cx, cy, bx, by), b = edge(ax, ay, cx, cy), c = edge(bx, by, ax, ay);
     real1 sum = a + (b + c);
     real1 distance = copysign(r->scale_z, sum * r->scale_z) * mul_add(a, az, mul_add(b, bz, c * cz));
