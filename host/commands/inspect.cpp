@@ -4,6 +4,7 @@
 #include "commands/options.h"
 #include "device/buffers.h"
 #include "flatten/precision_warnings.h"
+#include "scene/options.h"
 
 #include <fmt/format.h>
 
@@ -92,14 +93,14 @@ void print_scene(const SceneDescription &scene, const FlatScene &flat) {
 void print_strategy(const SceneDescription &scene, int lanes) {
     const Strategy &strategy = scene.strategy;
     print("\nstrategy, after overrides (the scene's integrator: {})\n", scene.integrator_type);
-    for (int axis = 0; axis < AXIS_COUNT; ++axis)
-        print("  {:<18}{}\n", axes()[axis].name, axes()[axis].choices[strategy[axis]].name);
-    print("  {:<18}{}\n", "max-depth", strategy.max_depth == no_limit ? "none" : std::to_string(strategy.max_depth));
-    print("  {:<18}{}\n  {:<18}{:g}\n", "rr-depth", strategy.rr_depth, "rr-prob", strategy.rr_prob);
-    print("  {:<18}{}\n", "math", name_of(strategy.math));
-    print("  {:<18}{}{}\n", "lanes", lanes,
-          strategy.lanes ? "" : " (auto: what a CPU device here would take; no device was asked, a GPU takes 1)");
-    print("  {:<18}{}\n", "specialise", strategy.specialise ? "on" : "off");
+    print("  {:<18}{}\n", "integrator", axes()[AXIS_integrator].choices[strategy[AXIS_integrator]].name);
+    for (const StrategyOption &option : strategy_options())
+        if (option.name == "lanes")
+            print("  {:<18}{}{}\n", "lanes", lanes,
+                  strategy.lanes ? ""
+                                 : " (auto: what a CPU device here would take; no device was asked, a GPU takes 1)");
+        else
+            print("  {:<18}{}\n", option.name, option.text(strategy));
 }
 
 void print_buffers(const FlatScene &flat) {

@@ -10,40 +10,12 @@ namespace opal {
 
 namespace {
 
-constexpr const char *scenes_own = " [the scene's]";
-
-std::string axis_help(const Axis &axis) {
-    std::string help = axis.help + scenes_own;
-    for (const Choice &choice : axis.choices)
-        help += fmt::format("\n  {}: {}", choice.name, choice.help);
-    return help;
-}
-
 std::string integrator_help() {
-    return fmt::format("{}{}\n  {}", axes()[AXIS_integrator].help, scenes_own,
+    return fmt::format("{} [the scene's]\n  {}", axes()[AXIS_integrator].help,
                        fmt::join(names_of(integrator_types()), ", "));
 }
 
-struct NumberHelp {
-    std::string name;
-    const char *type, *help;
-};
-
-// The options beside the axes (scene/options.h).
-const std::vector<NumberHelp> numbers = {
-    {"max-depth", "N|none",
-     "segments of the longest path: 1 shows lights, 2 adds direct light [the scene's, else none]"},
-    {"rr-depth", "N", "Russian roulette from this many segments on [the scene's, else 3]"},
-    {"rr-prob", "P", "--rr fixed: probability to survive, above 0 to 1 [the scene's, else 0.95]"},
-    {"math", "MODE",
-     "precise: single precision; fast: the same with relaxed math; double: double precision, where the device has it "
-     "[precise]"},
-    {"lanes", "N|auto",
-     "paths that a work-item carries: 1, 4, 8, 16, or auto: what the device's vectors hold, 1 on a GPU [auto]"},
-    {"specialise", "on|off", "compile what the scene needs, or one kernel that can do everything [on]"},
-};
-
-void add_override(CLI::App &app, SceneOptions &options, const std::string &name, const char *type,
+void add_override(CLI::App &app, SceneOptions &options, const std::string &name, const std::string &type,
                   const std::string &help) {
     app.add_option_function<std::string>(
            "--" + name, [&options, name](const std::string &value) { options.overrides[name] = value; }, help)
@@ -60,16 +32,8 @@ void add_scene_options(CLI::App &app, SceneOptions &options) {
 
 void add_strategy_options(CLI::App &app, SceneOptions &options) {
     add_override(app, options, "integrator", "NAME", integrator_help());
-    for (const Option &option : opal::options()) {
-        const auto axis =
-            std::find_if(axes().begin(), axes().end(), [&](const Axis &a) { return a.name == option.name; });
-        if (axis != axes().end())
-            add_override(app, options, option.name, "NAME", axis_help(*axis));
-        else {
-            const NumberHelp &row = find_row(numbers, "strategy option", option.name);
-            add_override(app, options, row.name, row.type, row.help);
-        }
-    }
+    for (const StrategyOption &option : strategy_options())
+        add_override(app, options, option.name, option.values, option.help);
     app.add_flag("--lenient", options.load.lenient, "An unknown property of the scene warns instead of failing");
     app.add_option("--cl-dir", options.cl_dir, "Read the kernels from this copy of cl/ [those in the binary]")
         ->type_name("FOLDER");

@@ -15,8 +15,6 @@ namespace opal {
 
 namespace {
 
-double luminance_of(Vec3 c) { return 0.212671 * c.x + 0.715160 * c.y + 0.072169 * c.z; }
-
 Vec3 direction_at(double degrees) {
     const double theta = degrees * std::numbers::pi / 180;
     return {std::sin(theta), 0, std::cos(theta)};
@@ -108,8 +106,10 @@ private:
         draw_in_batches(probe, size_t(test_.sample_count), options_.seed + unsigned(done_.size()),
                         [&](const Planes &numbers) {
                             const Planes drawn = probe.bsdf_sample(id, direction_at(angle), numbers);
-                            for (size_t i = 0; i < drawn.count; i++)
-                                weights.add(luminance_of(drawn.vec3(BSDF_WEIGHT_R, i)));
+                            for (size_t i = 0; i < drawn.count; i++) {
+                                const Vec3 w = drawn.vec3(BSDF_WEIGHT_R, i);
+                                weights.add(luminance({w.x, w.y, w.z}));
+                            }
                         });
         judge_mean(fmt::format("{} at {:g} degrees", name_of(test_.bsdfs[id]), angle), weights.sample(), "");
     }

@@ -33,7 +33,6 @@ Film render(const Row &row, SceneDescription scene, double value, const Device &
     return renderer.film();
 }
 
-double luminance(const std::array<double, 3> &c) { return 0.212671 * c[0] + 0.715160 * c[1] + 0.072169 * c[2]; }
 double mean_of(const Film &film, size_t p) { return film.count[p] ? luminance(film.sum[p]) / film.count[p] : 0; }
 
 // Standard error of the mean difference of two films, by the differences of their pixels.

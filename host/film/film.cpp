@@ -1,5 +1,7 @@
 #include "film/film.h"
 
+#include "base/color.h"
+
 #include <cmath>
 
 namespace opal {
@@ -10,8 +12,6 @@ namespace {
 double variance_of_mean(double sum, double squares, double n) {
     return n < 2 ? 0 : std::fmax(0, squares - sum * sum / n) / (n * (n - 1));
 }
-
-double luminance_of(const std::array<double, 3> &c) { return 0.212671 * c[0] + 0.715160 * c[1] + 0.072169 * c[2]; }
 
 } // namespace
 
@@ -29,12 +29,12 @@ FilmStatistics statistics_of(const Film &film) {
         filled++;
         for (int c = 0; c < 3; c++)
             s.mean_rgb[c] += film.sum[p][c] / n;
-        const double luminance = luminance_of(film.sum[p]);
-        variance += variance_of_mean(luminance, film.squares[p][3], n);
+        const double y = luminance(film.sum[p]);
+        variance += variance_of_mean(y, film.squares[p][3], n);
         if (n == 1) {
             s.single_sample_pixels++;
-            between += luminance;
-            between_squares += luminance * luminance;
+            between += y;
+            between_squares += y * y;
         }
     }
     s.invalid = film.invalid;
@@ -42,7 +42,7 @@ FilmStatistics statistics_of(const Film &film) {
         return s;
     for (double &c : s.mean_rgb)
         c /= filled;
-    s.mean_luminance = luminance_of(s.mean_rgb);
+    s.mean_luminance = luminance(s.mean_rgb);
     const double singles = double(s.single_sample_pixels);
     variance += singles * singles * variance_of_mean(between, between_squares, singles);
     s.stderr_luminance = std::sqrt(variance) / filled;

@@ -9,7 +9,6 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-double luminance(const Color &c) { return 0.212671 * c[0] + 0.715160 * c[1] + 0.072169 * c[2]; }
 bool is_black(const Color &c) { return c[0] == 0 && c[1] == 0 && c[2] == 0; }
 void store(const Color &from, double factor, float (&to)[3]) {
     for (int i = 0; i < 3; i++)

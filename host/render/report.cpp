@@ -2,22 +2,26 @@
 
 #include "base/json.h"
 #include "base/log.h"
+#include "base/values.h"
+#include "scene/options.h"
 
 namespace opal {
 
 using nlohmann::json;
 
 json strategy_json(const SceneDescription &scene) {
-    const Strategy &s = scene.strategy;
-    json j;
-    for (int axis = 0; axis < AXIS_COUNT; axis++)
-        j[axes()[axis].name] = axes()[axis].choices[s[axis]].name;
-    j["integrator"] = scene.integrator_type;
-    j["rr-prob"] = s.rr_prob;
-    j["rr-depth"] = s.rr_depth;
-    j["max-depth"] = s.max_depth == no_limit ? json("none") : json(s.max_depth);
-    j["math"] = name_of(s.math);
-    j["specialise"] = s.specialise ? "on" : "off";
+    json j = {{"integrator", scene.integrator_type}};
+    for (const StrategyOption &option : strategy_options()) {
+        if (option.name == "lanes") // the report says how many there were
+            continue;
+        const std::string text = option.text(scene.strategy);
+        if (option.xml_tag == "float")
+            j[option.name] = parse_number(text);
+        else if (option.xml_tag == "integer" && text != "none")
+            j[option.name] = parse_integer(text);
+        else
+            j[option.name] = text;
+    }
     return j;
 }
 

@@ -3,13 +3,15 @@
 #include "base/table.h"
 #include "base/values.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace opal {
 
 namespace {
 
-std::string with(std::string name, char from, char to) {
+std::string replaced(std::string name, char from, char to) {
     std::replace(name.begin(), name.end(), from, to);
     return name;
 }
@@ -60,18 +62,39 @@ void set_specialise(Strategy &strategy, const std::string &value) {
     strategy.specialise = is_boolean ? parse_boolean(value) : find_row(switches, "specialise", value).on;
 }
 
-struct Number : Option {
-    void (*set)(Strategy &, const std::string &);
+const std::vector<StrategyOption> numbers = {
+    {"max-depth", "maxDepth", "integer", "N|none",
+     "segments of the longest path: 1 shows lights, 2 adds direct light [the scene's, else none]", set_max_depth,
+     [](const Strategy &s) { return s.max_depth == no_limit ? "none" : std::to_string(s.max_depth); }},
+    {"rr-depth", "rrDepth", "integer", "N", "Russian roulette from this many segments on [the scene's, else 3]",
+     set_rr_depth, [](const Strategy &s) { return std::to_string(s.rr_depth); }},
+    {"rr-prob", "rr_prob", "float", "P", "--rr fixed: probability to survive, above 0 to 1 [the scene's, else 0.95]",
+     set_rr_prob, [](const Strategy &s) { return fmt::format("{}", s.rr_prob); }},
+    {"math", "math", "string", "MODE",
+     "precise: single precision; fast: the same with relaxed math; double: double precision, where the device has it "
+     "[precise]",
+     set_math, [](const Strategy &s) { return name_of(s.math); }},
+    {"lanes", "lanes", "integer", "N|auto",
+     "paths that a work-item carries: 1, 4, 8, 16, or auto: what the device's vectors hold, 1 on a GPU [auto]",
+     set_lanes, [](const Strategy &s) { return s.lanes ? std::to_string(s.lanes) : "auto"; }},
+    {"specialise", "specialise", "boolean", "on|off",
+     "compile what the scene needs, or one kernel that can do everything [on]", set_specialise,
+     [](const Strategy &s) { return std::string(s.specialise ? "on" : "off"); }},
 };
 
-const std::vector<Number> numbers = {
-    {{"max-depth", "maxDepth", "integer"}, set_max_depth},
-    {{"rr-depth", "rrDepth", "integer"}, set_rr_depth},
-    {{"rr-prob", "rr_prob", "float"}, set_rr_prob},
-    {{"math", "math", "string"}, set_math},
-    {{"lanes", "lanes", "integer"}, set_lanes},
-    {{"specialise", "specialise", "boolean"}, set_specialise},
-};
+StrategyOption option_of_axis(int axis) {
+    const Axis &row = axes()[axis];
+    std::string help = row.help + " [the scene's]";
+    for (const Choice &choice : row.choices)
+        help += fmt::format("\n  {}: {}", choice.name, choice.help);
+    return {row.name,
+            replaced(row.name, '-', '_'),
+            "string",
+            "NAME",
+            help,
+            [axis](Strategy &s, const std::string &value) { s[axis] = find_choice(axis, value); },
+            [axis](const Strategy &s) { return axes()[axis].choices[s[axis]].name; }};
+}
 
 constexpr bool university = true;
 
@@ -89,21 +112,14 @@ const std::vector<IntegratorType> types = {
     {"path", CHOICE_integrator_path},
 };
 
-int axis_named(const std::string &name) {
-    for (int axis = 0; axis < AXIS_COUNT; ++axis)
-        if (axes()[axis].name == name)
-            return axis;
-    return -1;
-}
-
 } // namespace
 
-std::span<const Option> options() {
-    static const std::vector<Option> all = [] {
-        std::vector<Option> list;
-        for (const Axis &axis : axes())
-            if (&axis != &axes()[AXIS_integrator])
-                list.push_back({axis.name, with(axis.name, '-', '_'), "string"});
+std::span<const StrategyOption> strategy_options() {
+    static const std::vector<StrategyOption> all = [] {
+        std::vector<StrategyOption> list;
+        for (int axis = 0; axis < AXIS_COUNT; axis++)
+            if (axis != AXIS_integrator)
+                list.push_back(option_of_axis(axis));
         list.insert(list.end(), numbers.begin(), numbers.end());
         return list;
     }();
@@ -111,18 +127,13 @@ std::span<const Option> options() {
 }
 
 void set_option(Strategy &strategy, const std::string &name, const std::string &value) {
-    std::string typed = with(name, '_', '-');
-    int axis = axis_named(typed);
-    if (axis == AXIS_integrator)
+    const std::string typed = replaced(name, '_', '-');
+    if (typed == "integrator")
         return apply_integrator(strategy, find_integrator(value));
-    if (axis >= 0) {
-        strategy[axis] = find_choice(axis, value);
-        return;
-    }
-    for (const Number &number : numbers)
-        if (number.name == typed)
-            return number.set(strategy, value);
-    std::vector<std::string> known = names_of(options());
+    for (const StrategyOption &option : strategy_options())
+        if (option.name == typed)
+            return option.set(strategy, value);
+    std::vector<std::string> known = names_of(strategy_options());
     known.insert(known.begin(), "integrator");
     throw Error(unknown_name("strategy option", name, known));
 }
@@ -130,7 +141,7 @@ void set_option(Strategy &strategy, const std::string &name, const std::string &
 std::span<const IntegratorType> integrator_types() { return types; }
 
 const IntegratorType &find_integrator(const std::string &name) {
-    return find_row(types, "integrator", with(name, '-', '_'));
+    return find_row(types, "integrator", replaced(name, '-', '_'));
 }
 
 void apply_integrator(Strategy &strategy, const IntegratorType &type) {
@@ -141,8 +152,8 @@ void apply_integrator(Strategy &strategy, const IntegratorType &type) {
         strategy[AXIS_rr] = type.rr;
 }
 
-// The integrator first, since its name decides other axes that may be given too. A choice of the scene's that an
-// override left without a meaning falls back to the default.
+// The integrator comes first, as its name implies choices of other axes, which may be overridden too. Where an override
+// leaves one of the scene's choices without meaning, that choice falls back to its default.
 void override_strategy(Strategy &strategy, const std::map<std::string, std::string> &overrides) {
     auto given = [&](const char *name) { return overrides.contains(name); };
     if (auto integrator = overrides.find("integrator"); integrator != overrides.end())

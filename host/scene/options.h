@@ -1,27 +1,32 @@
-// What a user may set of a Strategy, by name and text: the axes of cl/shared/strategy.h and a few numbers. The same
-// table serves the command line ("max-depth") and the XML (<integer name="maxDepth">).
+// The options of a Strategy, by name and text: the axes of cl/shared/strategy.h and a few numbers. One row an option
+// serves the command line (--max-depth), the XML (<integer name="maxDepth">), the JSON reports and `opal inspect`.
 #pragma once
 
 #include "scene/strategy.h"
 
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
 
 namespace opal {
 
-struct Option {
-    std::string name;     // on the command line: "max-depth"
-    std::string xml_name; // as a property of the integrator: "maxDepth"
-    std::string xml_tag;  // and its type: "integer"
+struct StrategyOption {
+    std::string name;                                         // on the command line: "max-depth"
+    std::string xml_name;                                     // as a property of the integrator: "maxDepth"
+    std::string xml_tag;                                      // of that property: "integer"
+    std::string values;                                       // what the help shows for the value: "N|none"
+    std::string help;                                         // its meaning, unit and default
+    std::function<void(Strategy &, const std::string &)> set; // throws Error where the text is no such value
+    std::function<std::string(const Strategy &)> text;        // the value, as `set` takes it
 };
 
-std::span<const Option> options(); // every axis but the integrator, then the numbers
+std::span<const StrategyOption> strategy_options(); // every axis but the integrator, then the numbers
 
-// Sets one option, "integrator" included; throws Error, without a place, where the name or the value does not exist.
+// Sets one option, "integrator" included. Throws Error, without a place, where the name or the value does not exist.
 void set_option(Strategy &strategy, const std::string &name, const std::string &value);
 
-// An integrator as the XML and --integrator name it, and what its name decides beside the integrator axis.
+// A name of an integrator, as the XML and --integrator give it, with the choices that the name implies.
 struct IntegratorType {
     std::string name;
     int integrator;          // CHOICE_integrator_*

@@ -1,6 +1,7 @@
 // A scene as it was written, all defaults resolved: plain values in world units and double precision.
 #pragma once
 
+#include "base/color.h"
 #include "base/math.h"
 #include "bsdfs/list.h"
 #include "emitters/list.h"
@@ -21,8 +22,6 @@ struct SourcePlace {
     int line = 0, column = 0;
     std::string text() const; // "file:line:col"
 };
-
-using Color = std::array<double, 3>; // linear RGB
 
 struct Bsdf {
     BsdfRecord record{}; // kind and parameters, ready for the device

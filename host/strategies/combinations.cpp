@@ -180,8 +180,9 @@ std::string name_of(const Choices &c, const std::vector<Choices> &set) {
 } // namespace
 
 bool is_same(const Strategy &a, const Strategy &b) {
-    return a.choices == b.choices && a.rr_prob == b.rr_prob && a.rr_depth == b.rr_depth && a.max_depth == b.max_depth &&
-           a.math == b.math && a.lanes == b.lanes && a.specialise == b.specialise;
+    return a.choices == b.choices &&
+           std::all_of(strategy_options().begin(), strategy_options().end(),
+                       [&](const StrategyOption &option) { return option.text(a) == option.text(b); });
 }
 
 NamedStrategy named_strategy(const SceneDescription &scene, const std::string &text) {

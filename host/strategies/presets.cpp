@@ -89,7 +89,7 @@ std::vector<Candidate> parse_strategies(const SceneDescription &scene, const std
             else if (part.find('=') == std::string::npos)
                 throw Error(fmt::format("--strategies: '{}' is neither a preset (course, all) nor a list "
                                         "axis=value,...; axes: integrator, {}",
-                                        part, joined(names_of(options()))));
+                                        part, joined(names_of(strategy_options()))));
             else
                 list.add(part, part);
     if (!math.empty()) {

@@ -45,8 +45,6 @@ Measured::Rendered Measured::render(unsigned spp, unsigned seed, unsigned first)
 
 namespace {
 
-double luminance(double r, double g, double b) { return 0.212671 * r + 0.715160 * g + 0.072169 * b; }
-
 double median_of(std::vector<double> values) {
     const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
@@ -64,8 +62,7 @@ Pilot run_pilot(Measured &measured, unsigned seed, double seconds) {
     }
     Pilot pilot{spp, r.seconds / spp, {}, {}, measured.takes_both()};
     for (size_t p = 0; p < r.film.sum.size(); p++) {
-        const double n = std::fmax(2, r.film.count[p]),
-                     sum = luminance(r.film.sum[p][0], r.film.sum[p][1], r.film.sum[p][2]);
+        const double n = std::fmax(2, r.film.count[p]), sum = luminance(r.film.sum[p]);
         pilot.mean.push_back(sum / n);
         pilot.variance.push_back(std::fmax(0, r.film.squares[p][3] - sum * sum / n) / (n - 1));
     }

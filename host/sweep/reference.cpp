@@ -1,5 +1,6 @@
 #include "sweep/reference.h"
 
+#include "base/color.h"
 #include "image/metrics.h"
 #include "plot/canvas.h"
 
@@ -11,7 +12,6 @@ namespace opal {
 namespace {
 
 constexpr std::array<const char *, 3> channels = {"R", "G", "B"};
-constexpr std::array<double, 3> luminance_weights = {0.212671, 0.715160, 0.072169};
 
 std::vector<double> luminances(const Image &image) {
     std::vector<double> y(size_t(image.width) * size_t(image.height));

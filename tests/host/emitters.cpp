@@ -14,8 +14,6 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-double luminance(Color c) { return 0.212671 * c[0] + 0.715160 * c[1] + 0.072169 * c[2]; }
-
 } // namespace
 
 TEST_CASE("a light of slivers down to the smallest triangle", "[emitters]") {

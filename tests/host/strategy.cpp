@@ -98,7 +98,7 @@ TEST_CASE("every option that is listed can be set", "[strategy]") {
     std::map<std::string, std::string> values = {{"max-depth", "none"}, {"rr-depth", "3"}, {"rr-prob", "0.5"},
                                                  {"math", "fast"},      {"lanes", "8"},    {"specialise", "on"}};
     size_t count = 0;
-    for (const Option &option : options()) {
+    for (const StrategyOption &option : strategy_options()) {
         bool is_number = values.contains(option.name);
         std::string value = is_number ? values[option.name] : "";
         for (const Axis &axis : axes())

@@ -59,7 +59,7 @@ const std::vector<Parser> parsers = {{"normals", parse_normals},
 
 // Every axis and number can be written as a property too, and then wins.
 void parse_options(Properties &properties, Strategy &strategy) {
-    for (const Option &option : options())
+    for (const StrategyOption &option : strategy_options())
         if (auto value = properties.text(option.xml_tag, option.xml_name))
             try {
                 set_option(strategy, option.name, *value);
