@@ -1,4 +1,4 @@
-// dispatch: choosing an emitter, a point on it, and what it sends from there, picked by kind.
+// dispatch: the choice of an emitter, a point on it and its radiance, by the kind of each lane's emitter.
 #include "core/lanes.cl"
 #include "core/rng.cl"
 #include "emitters/interface.cl"

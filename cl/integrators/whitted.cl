@@ -1,4 +1,4 @@
-// whitted: what surfaces emit plus one bounce of direct light by emitter sampling; specular surfaces are followed, with
+// whitted: emitted light plus one bounce of direct light by emitter sampling; specular surfaces are followed with
 // probability 0.95 (Nori's assignment 4; Whitted 1980).
 #include "bsdfs/dispatch.cl"
 #include "core/lanes.cl"

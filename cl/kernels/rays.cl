@@ -91,8 +91,7 @@ kernel void generate(SCENE_PARAMETERS, uint kind, float lo_x, float lo_y, float 
     put_ray(rays, stride, base, ray, active);
 }
 
-// A work-item traces rays_an_item rays from its own first one on, LANES at a time; these are the first and the last but
-// one.
+// A work-item traces rays_an_item rays, LANES at a time. These are its first ray, and the ray after its last.
 static uint first_ray(uint rays_an_item) { return (uint)get_global_id(0) * rays_an_item; }
 static uint end_of_rays(uint rays_an_item, uint count) { return min(first_ray(rays_an_item) + rays_an_item, count); }
 

@@ -1,4 +1,4 @@
-// What cl/kernels/rays.cl works on, written once for host and device.
+// The kinds of rays of cl/kernels/rays.cl and its columns, written once for host and device.
 #ifndef OPAL_RAYS_LIST_H
 #define OPAL_RAYS_LIST_H
 

@@ -1,4 +1,4 @@
-// What cl/kernels/selftest.cl computes, written once for host and device.
+// The records and functions that cl/kernels/selftest.cl checks, written once for host and device.
 #ifndef OPAL_SELFTEST_LIST_H
 #define OPAL_SELFTEST_LIST_H
 

@@ -35,7 +35,7 @@ typedef struct {
 } TriangleBlock;
 OPAL_SIZE_CHECK(TriangleBlock, 320);
 
-// A triangle's attributes: what shading needs beside its vertices.
+// A triangle's attributes for shading, beside its vertices.
 typedef struct {
     uint normal[3];       // of each corner, an index into the normals (3 floats each); OPAL_NONE: use the geometric one
     uint mesh;

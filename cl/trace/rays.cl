@@ -1,4 +1,4 @@
-// rays: what both walks of the tree (one_lane/, many_lanes/) make of a ray before they test boxes and triangles.
+// rays: the set-up of a ray for both walks of the tree (one_lane/, many_lanes/).
 #include "core/lanes.cl"
 #include "shared/types.h"
 
