@@ -101,7 +101,7 @@ static Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask active) {
     s.t = hit.t;
     s.u = hit.u;
     s.v = hit.v;
-    if (OPAL_HAS_listed) {
+    if (OPAL_HAS_face_list) {
         // A face-list hit is where the ray meets the plane. Edge-on that may be beyond the triangle's sides, or
         // nowhere: the nearest point of the triangle is taken.
         mask from_list = to_mask(hit.slot >= scene->settings->face_list_slot);

@@ -15,7 +15,7 @@
 // The nearest hit of each active lane.
 static Hit closest_hit(const Scene *scene, Ray ray, mask active) {
     Hit hit = {ray.tmax, (real)(0), (real)(0), (uints)(OPAL_NONE)};
-    if (OPAL_HAS_listed) hit = faces_closest(scene, ray);
+    if (OPAL_HAS_face_list) hit = faces_closest(scene, ray);
     if (!OPAL_HAS_tree) return hit;
     ray.tmax = hit.t;
     TreeRays rays;
@@ -31,7 +31,7 @@ static Hit closest_hit(const Scene *scene, Ray ray, mask active) {
 // The active lanes whose ray is blocked between tmin and tmax, by the tree or by the faces `among` of the face list.
 static mask blocked_by(const Scene *scene, Ray ray, FaceRange among, mask active) {
     mask blocked = NO_LANES;
-    if (OPAL_HAS_listed && among.faces > 0) blocked = faces_any(scene, ray, among, active);
+    if (OPAL_HAS_face_list && among.faces > 0) blocked = faces_any(scene, ray, among, active);
     if (!OPAL_HAS_tree) return blocked;
     TreeRays rays;
     prepare_rays(&rays, scene, ray, active & !blocked);

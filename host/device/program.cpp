@@ -61,8 +61,10 @@ std::string program_text(const Features &features, const BuildOptions &options, 
         text += fmt::format("#define OPAL_REPEAT_{} {}\n", stage, int(options.twice == stage));
     if (!options.note.empty())
         text += fmt::format("typedef int opal_note_{};\n", options.note); // drivers see through comments and defines
-    for (const Feature &feature : features.list)
-        text += fmt::format("#define OPAL_HAS_{} {}\n", feature.name, int(feature.on));
+#define OPAL_FEATURE_ROW(name, shown)                                                                                  \
+    text += fmt::format("#define OPAL_HAS_" #name " {}\n", int(features[FEATURE_##name]));
+    OPAL_FEATURES
+#undef OPAL_FEATURE_ROW
 #define OPAL_AXIS_DEFINE(axis, help)                                                                                   \
     text += fmt::format("#define OPAL_AXIS_" #axis " {}\n", features.axes[AXIS_##axis]);
     OPAL_AXES(OPAL_AXIS_DEFINE)

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace opal {
 namespace {
@@ -71,7 +70,7 @@ public:
                        scene.triangles.size(), "triangle", "triangles");
     }
 
-    Decision listed() const {
+    Decision face_list() const {
         if (lanes < FACE_LIST_LANES)
             return {false, fmt::format("pays from {} lanes on", FACE_LIST_LANES)};
         if (scene.faces.empty())
@@ -139,19 +138,28 @@ int find_hemisphere(const SceneDescription &description, const FlatScene &scene,
 
 } // namespace
 
+const char *feature_name(unsigned feature) {
+    static const char *const names[] = {
+#define OPAL_FEATURE_ROW(name, shown) shown,
+        OPAL_FEATURES
+#undef OPAL_FEATURE_ROW
+    };
+    return names[feature];
+}
+
 Features find_features(const SceneDescription &description, const FlatScene &scene, int lanes) {
     const Decider decider(description, scene, lanes);
-    const std::pair<const char *, Decision> decisions[] = {
-#define OPAL_FEATURE_ROW(name) {#name, decider.name()},
+    const Decision decisions[] = {
+#define OPAL_FEATURE_ROW(name, shown) decider.name(),
         OPAL_FEATURES
 #undef OPAL_FEATURE_ROW
     };
 
     Features features;
     const bool specialise = description.strategy.specialise;
-    for (const auto &[name, decision] : decisions)
-        features.list.push_back(specialise ? Feature{name, decision.on, decision.reason}
-                                           : Feature{name, true, "--specialise off"});
+    for (unsigned i = 0; i < FEATURE_COUNT; i++)
+        features.list[i] =
+            specialise ? Feature{decisions[i].on, decisions[i].reason} : Feature{true, "--specialise off"};
     for (int axis = 0; axis < AXIS_COUNT; axis++) {
         features.axes[axis] = specialise ? description.strategy[axis] : -1;
         features.axis_reasons[axis] = specialise ? "chosen" : "--specialise off: decided at run time";
@@ -174,13 +182,6 @@ Features shared_features(const std::vector<FlatScene> &scenes) {
             }
     }
     return shared;
-}
-
-bool Features::operator[](std::string_view name) const {
-    for (const Feature &feature : list)
-        if (feature.name == name)
-            return feature.on;
-    throw std::logic_error("no feature is named " + std::string(name));
 }
 
 } // namespace opal

@@ -7,6 +7,9 @@ namespace opal {
 
 constexpr int FACE_LIST_LANES = 4; // from this width on testing each of a few triangles beats a tree
 
+// A feature's name (FEATURE_*), as `opal inspect` prints it.
+const char *feature_name(unsigned feature);
+
 // Everything in `scene` but its features must be there. With strategy.specialise off, all features are on and all axes
 // -1.
 Features find_features(const SceneDescription &description, const FlatScene &scene, int lanes);

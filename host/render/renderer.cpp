@@ -1,6 +1,7 @@
 #include "render/renderer.h"
 
 #include "device/scene_buffers.h"
+#include "shared/film.h"
 
 #include <algorithm>
 #include <chrono>
@@ -12,8 +13,7 @@ namespace opal {
 
 namespace {
 
-constexpr unsigned film_planes = 22, invalid_records = 8; // as in cl/film.cl
-constexpr unsigned long long slot_bytes = 12, slots_budget = 256ull << 20;
+constexpr unsigned long long slot_bytes = 4 * OPAL_SAMPLE_FLOATS, slots_budget = 256ull << 20;
 constexpr unsigned most_chunks = 4096;
 
 unsigned ceil_div(unsigned a, unsigned b) { return (a + b - 1) / b; }
@@ -47,21 +47,21 @@ Renderer::Shape Renderer::shape_of_launches() const {
 
 Renderer::Renderer(const Device &device, const FlatScene &scene, const RenderOptions &options)
     : device_(device), settings_(scene.settings), options_(options),
-      pixels_(size_t(scene.settings.width) * scene.settings.height), wide_filter_(scene.features["wide_filter"]) {
+      pixels_(size_t(scene.settings.width) * scene.settings.height), wide_filter_(scene.features[FEATURE_wide_filter]) {
     shape_ = shape_of_launches();
     // Slot numbers have 32 bits, three floats a slot; there is room for at least one sample of each pixel.
     const unsigned long long most = std::min({slots_budget, device.info.max_allocation, slot_bytes * 0x55555555ull});
     slot_samples_ = unsigned(std::clamp<unsigned long long>(most / slot_bytes / pixels_, 1, 64ull * most_chunks));
-    check_room(device, pixels_ * (slot_bytes * slot_samples_ + 4ull * film_planes + 4), "the film and its samples");
+    check_room(device, pixels_ * (slot_bytes * slot_samples_ + 4ull * FILM_PLANES + 4), "the film and its samples");
 
     const cl::Program program = build_program(device, program_text(scene.features, options.build, *options.sources),
                                               options.build, &compile_seconds_);
     scene_ = upload_scene(device, scene);
     slots_ =
         make_buffer(device, CL_MEM_READ_WRITE, pixels_ * slot_bytes * slot_samples_, nullptr, "the samples of a pass");
-    film_ = make_zeros<float>(device, pixels_ * film_planes, "the film");
+    film_ = make_zeros<float>(device, pixels_ * FILM_PLANES, "the film");
     counts_ = make_zeros<cl_uint>(device, pixels_, "the film's sample counts");
-    invalid_ = make_zeros<cl_uint>(device, 1 + 2 * invalid_records, "the list of invalid samples");
+    invalid_ = make_zeros<cl_uint>(device, 1 + 2 * OPAL_INVALID_RECORDS, "the list of invalid samples");
 
     with_device(device.info, [&] {
         render_kernel_ = cl::Kernel(program, "render");
@@ -99,9 +99,9 @@ void Renderer::restart(unsigned seed, unsigned first_sample) {
     kernel_seconds_ = 0;
     with_device(device_.info, [&] {
         device_.queue.enqueueWriteBuffer(scene_[0], CL_TRUE, 0, sizeof settings_, &settings_);
-        device_.queue.enqueueFillBuffer(film_, cl_uint(0), 0, pixels_ * film_planes * 4);
+        device_.queue.enqueueFillBuffer(film_, cl_uint(0), 0, pixels_ * FILM_PLANES * 4);
         device_.queue.enqueueFillBuffer(counts_, cl_uint(0), 0, pixels_ * 4);
-        device_.queue.enqueueFillBuffer(invalid_, cl_uint(0), 0, (1 + 2 * invalid_records) * 4);
+        device_.queue.enqueueFillBuffer(invalid_, cl_uint(0), 0, (1 + 2 * OPAL_INVALID_RECORDS) * 4);
         return device_.queue.finish();
     });
 }
@@ -180,24 +180,24 @@ Film Renderer::film() const {
     film.width = int(settings_.width);
     film.height = int(settings_.height);
     film.count = read_buffer<cl_uint>(device_, counts_, pixels_);
-    const std::vector<float> planes = read_buffer<float>(device_, film_, pixels_ * film_planes);
-    const auto value = [&](unsigned plane, unsigned low, size_t pixel) { // hi + lo
-        return double(planes[plane * pixels_ + pixel]) + double(planes[(plane + low) * pixels_ + pixel]);
+    const std::vector<float> planes = read_buffer<float>(device_, film_, pixels_ * FILM_PLANES);
+    const auto value = [&](unsigned plane, unsigned low, size_t pixel) {
+        return double(planes[plane * pixels_ + pixel]) + double(planes[low * pixels_ + pixel]);
     };
     film.sum.resize(pixels_);
     film.squares.resize(pixels_);
     film.weighted.resize(wide_filter_ ? pixels_ : 0);
     for (size_t p = 0; p < pixels_; p++) {
         for (unsigned c = 0; c < 3; c++)
-            film.sum[p][c] = value(0 + c, 3, p);
+            film.sum[p][c] = value(FILM_SUM + c, FILM_SUM_LOW + c, p);
         for (unsigned c = 0; c < 4; c++)
-            film.squares[p][c] = value(6 + c, 4, p);
+            film.squares[p][c] = value(FILM_SQUARES + c, FILM_SQUARES_LOW + c, p);
         for (unsigned c = 0; wide_filter_ && c < 4; c++)
-            film.weighted[p][c] = value(14 + c, 4, p);
+            film.weighted[p][c] = value(FILM_WEIGHTED + c, FILM_WEIGHTED_LOW + c, p);
     }
-    const std::vector<cl_uint> invalid = read_buffer<cl_uint>(device_, invalid_, 1 + 2 * invalid_records);
+    const std::vector<cl_uint> invalid = read_buffer<cl_uint>(device_, invalid_, 1 + 2 * OPAL_INVALID_RECORDS);
     film.invalid = invalid[0];
-    for (unsigned i = 0; i < std::min(invalid[0], invalid_records); i++)
+    for (unsigned i = 0; i < std::min<unsigned>(invalid[0], OPAL_INVALID_RECORDS); i++)
         film.invalid_places.push_back(
             {invalid[1 + 2 * i] % settings_.width, invalid[1 + 2 * i] / settings_.width, invalid[2 + 2 * i]});
     return film;

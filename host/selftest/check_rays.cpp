@@ -85,10 +85,12 @@ Findings check_rays(const Device &device, const SelftestOptions &options) {
         scene.strategy.specialise = specialise;
         FlatScene flat = flatten(scene, options.build.lanes);
         if (specialise) { // one program for all scenes without a tree
-            const bool tree = flat.features["tree"];
+            const bool tree = flat.features[FEATURE_tree];
             flat.features = scene_of_bsdfs({}).features;
-            for (Feature &feature : flat.features.list)
-                feature.on = feature.name == "tree" ? tree : feature.on && !feature.name.starts_with("bsdf_");
+            flat.features.list[FEATURE_tree].on = tree;
+#define OPAL_WITHOUT_BSDF(name) flat.features.list[FEATURE_bsdf_##name].on = false;
+            OPAL_BSDFS(OPAL_WITHOUT_BSDF)
+#undef OPAL_WITHOUT_BSDF
         }
         return KernelProbe(device, flat, options.build, *options.sources);
     };
@@ -97,7 +99,7 @@ Findings check_rays(const Device &device, const SelftestOptions &options) {
         at_most("tree: hits unlike brute force", wrong_hits(soup, rays, random), 0),
         at_most("tree: rays lost at edges and vertices", double(edges::lost_rays(sphere, 20000, random)), 0)};
     KernelProbe few = probe_of(triangle_soup(20, random), true), small = probe_of(edges::closed_sphere(3), true);
-    if (!few.scene().features["tree"]) {
+    if (!few.scene().features[FEATURE_tree]) {
         findings.push_back(at_most("no tree: hits unlike brute force", wrong_hits(few, rays, random), 0));
         findings.push_back(
             at_most("no tree: rays lost at edges and vertices", double(edges::lost_rays(small, 20000, random)), 0));

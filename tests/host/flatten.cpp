@@ -55,7 +55,7 @@ TEST_CASE("a scene of nothing", "[flatten]") {
         CHECK(scene.blocks.size() == 1);
         CHECK(scene.blocks[0].id[0] == OPAL_NONE);
         CHECK(scene.settings.emitter_count == 0);
-        CHECK(scene.features["tree"] == (lanes == 1));
+        CHECK(scene.features[FEATURE_tree] == (lanes == 1));
     }
 }
 
@@ -137,7 +137,7 @@ TEST_CASE("tiny scenes share corners and need no tree", "[flatten]") {
     }
     const FlatScene scene = flatten(scene_of(faces), 8);
     CHECK(scene.nodes.empty());
-    CHECK_FALSE(scene.features["tree"]);
+    CHECK_FALSE(scene.features[FEATURE_tree]);
     CHECK(scene.face_list_triangles == 12);
     CHECK(scene.settings.face_list.vertices == 8);
     CHECK(scene.settings.face_list.faces == 6);
@@ -147,7 +147,7 @@ TEST_CASE("tiny scenes share corners and need no tree", "[flatten]") {
         CHECK(triangles_of_face(scene, i).size() == 2);
 
     SECTION("but for few lanes, many triangles, many vertices, or a kernel that can do everything") {
-        CHECK(flatten(scene_of(faces), 1).features["tree"]);
+        CHECK(flatten(scene_of(faces), 1).features[FEATURE_tree]);
         CHECK(flatten(scene_of(faces), 1).faces.empty());
         SceneDescription general = scene_of(faces);
         general.strategy.specialise = false;
@@ -157,12 +157,12 @@ TEST_CASE("tiny scenes share corners and need no tree", "[flatten]") {
             many.push_back(diffuse(Parallelogram{{0, 0, 0.1 * i}, {1, 0, 0}, {0, 1, 0}}));
         for (int i = 0; i < 33; i++)
             scattered.push_back(diffuse(mesh_of({{0, 0, 0.1 * i}, {1, 0, 0.1 * i}, {0, 1, 0.1 * i}}, {{0, 1, 2}})));
-        CHECK(flatten(scene_of(many), 8).features["tree"]);
-        CHECK(flatten(scene_of(scattered), 8).features["tree"]);
+        CHECK(flatten(scene_of(many), 8).features[FEATURE_tree]);
+        CHECK(flatten(scene_of(scattered), 8).features[FEATURE_tree]);
         many.pop_back();
         scattered.pop_back();
-        CHECK_FALSE(flatten(scene_of(many), 8).features["tree"]);
-        CHECK_FALSE(flatten(scene_of(scattered), 8).features["tree"]);
+        CHECK_FALSE(flatten(scene_of(many), 8).features[FEATURE_tree]);
+        CHECK_FALSE(flatten(scene_of(scattered), 8).features[FEATURE_tree]);
     }
 }
 
@@ -196,9 +196,9 @@ TEST_CASE("vertex normals are numbered across meshes; a triangle that lacks one 
         CHECK(scene.triangles[4].normal[corner] == OPAL_NONE);
     }
     CHECK((scene.triangles[1].mesh == 0 && scene.triangles[3].mesh == 1 && scene.triangles[4].mesh == 2));
-    CHECK(scene.features["shading_normals"]);
-    CHECK(reason(scene, "shading_normals") == "2 of 5 triangles");
-    CHECK_FALSE(flatten(scene_of({diffuse(one_triangle)}), 8).features["shading_normals"]);
+    CHECK(scene.features[FEATURE_shading_normals]);
+    CHECK(scene.features.list[FEATURE_shading_normals].reason == "2 of 5 triangles");
+    CHECK_FALSE(flatten(scene_of({diffuse(one_triangle)}), 8).features[FEATURE_shading_normals]);
 }
 
 TEST_CASE("triangles that float makes degenerate are dropped everywhere and counted", "[flatten]") {
@@ -248,7 +248,7 @@ TEST_CASE("the scenes that people have", "[flatten]") {
             const FlatScene scene = flatten(description, lanes);
             CHECK(scene.triangles.size() == triangles);
             CHECK(scene.emitters.size() == lights);
-            CHECK(scene.features["tree"] == (lanes == 1 || triangles > OPAL_FACE_LIST_TRIANGLES));
+            CHECK(scene.features[FEATURE_tree] == (lanes == 1 || triangles > OPAL_FACE_LIST_TRIANGLES));
             if (triangles > 1000)
                 CHECK(scene.sah_cost < 6);
         }
@@ -268,8 +268,8 @@ TEST_CASE("the largest triangles are listed beside the tree, each triangle is in
     const SceneDescription description =
         scene_of({diffuse(grid), diffuse(Parallelogram{{-5, -5, 0}, {40, 0, 0}, {0, 40, 0}})});
     const FlatScene scene = flatten(description, 8);
-    CHECK(scene.features["listed"]);
-    CHECK(scene.features["tree"]);
+    CHECK(scene.features[FEATURE_face_list]);
+    CHECK(scene.features[FEATURE_tree]);
     REQUIRE(scene.faces.size() == 1);
     CHECK(scene.face_list_triangles == 2);
     CHECK(scene.settings.face_list_to_light.faces == 0); // the grid is on one side of the floor

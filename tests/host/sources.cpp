@@ -75,7 +75,7 @@ TEST_CASE("A folder of sources holds what the binary embeds", "[sources]") {
 TEST_CASE("The program text defines width, precision, every feature and every axis, then the sources", "[sources]") {
     const Sources sources{{{"kernels/k.cl", "kernel void k() {}\n"}}};
     Features features;
-    features.list = {{"tree", true, ""}, {"wide_filter", false, ""}};
+    features.list[FEATURE_tree].on = true;
     features.axes.fill(-1);
     features.axes[AXIS_lighting] = CHOICE_lighting_mis;
     BuildOptions options;
@@ -86,8 +86,10 @@ TEST_CASE("The program text defines width, precision, every feature and every ax
     CHECK_THAT(text, Catch::StartsWith(
                          "#define LANES 8\n#define OPAL_DOUBLE 0\n#define OPAL_FAST 1\n#define OPAL_COUNT_TESTS 0\n"
                          "#define OPAL_REPEAT_traversal 0\n#define OPAL_REPEAT_sampling 0\n"
-                         "#define OPAL_HAS_tree 1\n#define OPAL_HAS_wide_filter 0\n"
-                         "#define OPAL_AXIS_integrator -1\n#define OPAL_AXIS_lighting 2\n"));
+                         "#define OPAL_HAS_bsdf_diffuse 0\n"));
+    CHECK_THAT(text, Catch::Contains("#define OPAL_HAS_face_list 0\n#define OPAL_HAS_tree 1\n"));
+    CHECK_THAT(text, Catch::Contains("#define OPAL_HAS_wide_filter 0\n"
+                                     "#define OPAL_AXIS_integrator -1\n#define OPAL_AXIS_lighting 2\n"));
     CHECK_THAT(text, Catch::Contains("#define OPAL_AXIS_sampler -1\n"));
     CHECK_THAT(text, Catch::Contains("\n#line 1 \"cl/kernels/k.cl\"\nkernel void k() {}\n"));
     CHECK(program_text(features, options, sources) == text);

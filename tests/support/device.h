@@ -16,8 +16,8 @@ const Device &device();
 // 1 and the device's own width, the two that every kernel test is run at.
 std::vector<int> tested_lanes();
 
-// All features on and every axis decided at run time, but for what is named: {"tree", 0}.
-Features all_features(const std::map<std::string, bool> &except = {});
+// All features on, but for those `without` (FEATURE_*), and every axis decided at run time.
+Features all_features(const std::vector<unsigned> &without = {});
 
 // Opal's own sources with those below tests/device/ as "tests/NAME.cl" among them.
 const Sources &sources();

@@ -49,7 +49,7 @@ Findings check_film(const Sources &sources, unsigned seed) {
         BuildOptions build;
         build.lanes = lanes;
         const cl::Program program =
-            build_program(device(), program_text(all_features({{"wide_filter", false}}), build, sources), build);
+            build_program(device(), program_text(all_features({FEATURE_wide_filter}), build, sources), build);
         const Output<float> film(FILM_PLANES * pixels);
         const Output<cl_uint> counts(pixels), invalid(1 + 2 * OPAL_INVALID_RECORDS);
         // In two passes, so that the sums of one go on in the next.
