@@ -1,4 +1,4 @@
-// How this process was started, for the records that results keep.
+// The command line of this process, which images and reports record.
 #pragma once
 
 #include <string>
@@ -6,9 +6,9 @@
 namespace opal {
 
 void set_command_line(int argc, const char *const *argv); // by main
-const std::string &command_line(); // as a shell would take it: words with blanks or signs are quoted; empty in tests
+const std::string &command_line();                        // quoted as for a shell; empty in tests
 
-// 'it'\''s': one word, quoted for a shell where it must be.
+// The word as a shell reads it back: 'it'\''s'. Quoted only where it must be.
 std::string shell_word(const std::string &word);
 
 } // namespace opal

@@ -7,9 +7,8 @@
 
 namespace opal {
 
-// Text of a JSON value, whatever bytes its strings hold: names of files and drivers need not be UTF-8, JSON must be.
-// What is not becomes U+FFFD, as in browsers and editors; the names are there to be read, and no file is opened by
-// them. indent -1: one line.
+// Text of a JSON value. Names of files and drivers need not be UTF-8, but JSON must be: bytes that are not become
+// U+FFFD, as in browsers and editors. indent -1: one line.
 inline std::string dump(const nlohmann::json &json, int indent = -1) {
     return json.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
 }

@@ -1,6 +1,5 @@
-// What Opal says: results to stdout, all else to stderr, a line each. Nothing here throws because it cannot print: a
-// log on a full disk or a closed terminal costs the message, never the render. Warnings are kept, so that tests and
-// JSON can show them.
+// Printing: results go to stdout, messages to stderr, a line each. Nothing here throws: a full disk or a closed
+// terminal costs the message, never the render. Warnings are kept for the JSON reports and the tests.
 #pragma once
 
 #include <fmt/core.h>
@@ -14,21 +13,21 @@ void set_quiet(bool quiet); // --quiet silences info, never warnings
 bool is_quiet();
 void info(const std::string &line);
 void set_verbose(bool verbose);       // --verbose
-void detail(const std::string &text); // said only where --verbose asks for it
+void detail(const std::string &text); // printed only with --verbose
 void warn(const std::string &line);   // prints "warning: ..."
 const std::vector<std::string> &warnings();
-void tell_error(const char *line);  // prints "error: ..."; for what ends a process
-void show(const std::string &text); // to stderr as it is: a progress bar
+void tell_error(const char *line);  // prints "error: ..."; the process then ends
+void show(const std::string &text); // prints to stderr without a line end: a progress bar
 
 // A result, to stdout at once.
 void print_text(const std::string &text);
 template <class... Arguments> void print(fmt::format_string<Arguments...> text, Arguments &&...arguments) {
     print_text(fmt::format(text, std::forward<Arguments>(arguments)...));
 }
-int output_error(); // the errno of the first result that stdout did not take; 0: it took all
+int output_error(); // errno of the first result that could not be written to stdout; 0: none
 
-// For the start of main. A write that fails does not end the process by SIGPIPE or SIGXFSZ from now on. Where stdin,
-// stdout or stderr is closed, its number is taken, so that no file of ours gets it and with it what is printed.
+// Call first in main. From then on a failed write does not end the process by SIGPIPE or SIGXFSZ. A closed stdin,
+// stdout or stderr is opened anew: else the next file would get its number, and printed text would end up in that file.
 void prepare_streams();
 
 } // namespace opal

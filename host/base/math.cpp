@@ -46,7 +46,7 @@ Transform Transform::rotate(Vec3 axis, double degrees) {
     return from_columns(column({1, 0, 0}), column({0, 1, 0}), column({0, 0, 1}), {});
 }
 
-// Columns left, up', direction, origin: +x is left in the image (SCENE_FORMAT section 2).
+// Columns left, up', direction, origin. In Nori the camera's +x axis points to the left of the image.
 Transform Transform::look_at(Vec3 origin, Vec3 target, Vec3 up) {
     Vec3 direction = normalize(target - origin);
     Vec3 left = normalize(cross(normalize(up), direction));

@@ -1,4 +1,4 @@
-// The little linear algebra that reading and flattening a scene needs, all in double.
+// Vectors and transforms in double, for reading and flattening scenes.
 #pragma once
 
 #include <array>
@@ -19,11 +19,11 @@ inline Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a
 inline double length(Vec3 a) { return std::hypot(a.x, a.y, a.z); }
 inline Vec3 normalize(Vec3 a) { return a * (1 / length(a)); }
 
-// An affine map, row-major: point p goes to rows[i][0..2] . p + rows[i][3]. The last row is kept for `matrix`.
+// A 4 x 4 matrix, row-major: point p goes to rows[i][0..2] . p + rows[i][3], divided by w.
 struct Transform {
     std::array<std::array<double, 4>, 4> rows = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
 
-    Vec3 point(Vec3 p) const; // divides by w
+    Vec3 point(Vec3 p) const;
     Vec3 vector(Vec3 v) const;
     Vec3 normal(Vec3 n) const;  // inverse transpose, not normalised
     double determinant() const; // of the upper 3x3
@@ -32,6 +32,6 @@ struct Transform {
     static Transform rotate(Vec3 axis, double degrees);
     static Transform look_at(Vec3 origin, Vec3 target, Vec3 up);
 };
-Transform operator*(const Transform &a, const Transform &b); // b first
+Transform operator*(const Transform &a, const Transform &b); // applies b first
 
 } // namespace opal

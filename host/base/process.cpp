@@ -56,7 +56,7 @@ ChildProcess::~ChildProcess() {
         finish(Clock::now());
 }
 
-// Reads until the process closes its end. False: the time was up before.
+// Reads the child's stdout until it is closed. False: the deadline came first.
 bool ChildProcess::read_until(Clock::time_point deadline) {
     for (;;) {
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();

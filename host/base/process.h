@@ -1,4 +1,4 @@
-// Running a program as a process of its own, whose crash or hang is a fact to report and not a disaster.
+// Child processes. Code that may crash or hang (drivers, checks of drivers) runs in one.
 #pragma once
 
 #include <chrono>
@@ -12,8 +12,8 @@ namespace opal {
 
 // How a process ended.
 struct Ending {
-    bool in_time = true; // else it was killed at its deadline
-    int signal = 0;      // that ended it, or 0
+    bool in_time = true; // false: it was killed at its deadline
+    int signal = 0;      // the signal that ended it, or 0
     int exit_code = 0;
     std::string signal_name() const; // "Aborted"
 };
@@ -22,14 +22,14 @@ class ChildProcess {
 public:
     using Clock = std::chrono::steady_clock;
 
-    // Starts `binary` with these arguments; what it says to stderr is dropped. Throws Error where that is not possible.
+    // Starts `binary` with these arguments and drops its stderr. Throws Error where it cannot be started.
     ChildProcess(const std::filesystem::path &binary, const std::vector<std::string> &arguments);
     ChildProcess(ChildProcess &&other) noexcept;
     ChildProcess &operator=(ChildProcess &&) = delete;
     ~ChildProcess(); // kills it if it still runs
 
-    Ending finish(Clock::time_point deadline);        // waits for it, or kills it at the deadline
-    const std::string &said() const { return said_; } // to stdout, until finish
+    Ending finish(Clock::time_point deadline);        // waits until it ends, or kills it at the deadline
+    const std::string &said() const { return said_; } // its stdout, after finish
 
 private:
     bool read_until(Clock::time_point deadline);

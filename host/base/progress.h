@@ -1,5 +1,4 @@
-// What a long computation says while it runs: a bar on a terminal, a line every few seconds elsewhere, nothing with
-// --quiet.
+// Progress of a long computation: a bar on a terminal, a line every few seconds elsewhere, nothing with --quiet.
 #pragma once
 
 #include <chrono>
@@ -9,13 +8,13 @@ namespace opal {
 
 class Progress {
 public:
-    // total: how many `unit` ("samples", camera paths) there will be.
+    // total: the amount of work, counted in `unit` ("samples", camera paths).
     Progress(std::string what, double total, std::string unit = "samples");
-    ~Progress(); // leaves the terminal's line empty
+    ~Progress(); // clears the terminal's line
     Progress(const Progress &) = delete;
     Progress &operator=(const Progress &) = delete;
 
-    void update(double done); // may be called as often as one likes
+    void update(double done); // cheap: prints at most ten times a second
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -25,8 +24,7 @@ private:
     Clock::time_point start_, said_;
 };
 
-// "render  45 % [#########           ]  3.21 M samples/s  12 s left"; seconds: since the start; bar: whether to draw
-// one.
+// "render  45 % [#########           ]  3.21 M samples/s  12 s left". seconds: since the start; bar: draw the bar.
 std::string progress_line(const std::string &what, const std::string &unit, double done, double total, double seconds,
                           bool bar);
 

@@ -17,11 +17,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// In C's streams, since those of C++ do not tell a failed read from the end of a file.
+// C's streams: C++'s do not tell a failed read from the end of a file.
 std::string read_stream(std::FILE *stream, const fs::path &file) {
-    std::error_code unknown; // of a pipe or device: it is read to its end
+    std::error_code unknown; // set for pipes and devices, which have no size and are read to their end
     const auto size = fs::file_size(file, unknown);
-    std::string bytes(unknown ? 65536 : size + 1, '\0'); // one more than there is: the end is met without growing
+    std::string bytes(unknown ? 65536 : size + 1,
+                      '\0'); // one byte more than the size, so that the end is seen without growing
     size_t count = 0;
     for (;;) {
         count += std::fread(bytes.data() + count, 1, bytes.size() - count, stream);

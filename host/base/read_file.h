@@ -1,4 +1,4 @@
-// Reading files whole. What cannot be read to its end is an error, never a shorter file.
+// Reads whole files. A file that cannot be read to its end is an error, never a shorter text.
 #pragma once
 
 #include <filesystem>

@@ -15,7 +15,7 @@ void set_flag(int) { flag = 1; }
 void watch_interrupts() {
     struct sigaction action {};
     action.sa_handler = set_flag;
-    action.sa_flags = SA_RESTART | SA_RESETHAND; // the second one has its usual effect
+    action.sa_flags = SA_RESTART | SA_RESETHAND; // the second signal has its usual effect
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
 }

@@ -1,11 +1,11 @@
-// Ctrl-C: the first asks the program to end with what it has, the second ends it.
+// Interrupts: the first Ctrl-C asks the program to end and keep its results so far, the second ends it at once.
 #pragma once
 
 namespace opal {
 
-constexpr int exit_interrupted = 130; // the exit code of a render that was interrupted and wrote what it had
+constexpr int exit_interrupted = 130; // exit code of an interrupted render whose image was written
 
-void watch_interrupts(); // from now on SIGINT and SIGTERM set the flag
+void watch_interrupts(); // from now on SIGINT and SIGTERM set the flag that interrupted() returns
 bool interrupted();
 
 } // namespace opal

@@ -1,5 +1,6 @@
-// A look-up that fails with what was possible: "unknown bsdf 'difuse'; did you mean 'diffuse'? available: diffuse,
-// ...". Rows are any records with a member `name` that a string_view can be made from.
+// Look-up by name in a table. A name that is not there gives an Error that lists the names:
+// "unknown bsdf 'difuse'; did you mean 'diffuse'? available: diffuse, ...".
+// A row is any struct with a member `name` that converts to string_view.
 #pragma once
 
 #include "base/error.h"
@@ -15,8 +16,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string> &
 
 std::string joined(const std::vector<std::string> &names); // "a, b, c"; "none" for no names
 
-// The sentence for a name that is not there; `what` says its kind ("bsdf", "property"), `of` whose it is (" of
-// <mesh>").
+// The sentence for an unknown name. what: its kind ("bsdf", "property"); of: its owner (" of <mesh>").
 std::string unknown_name(std::string_view what, std::string_view name, const std::vector<std::string> &known,
                          const std::string &of = "");
 

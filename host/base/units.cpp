@@ -14,7 +14,7 @@ struct Unit {
     double size;
 };
 
-// The number before a unit of the list; NaN where the text is something else.
+// The number before one of the units; NaN where the text is no number with such a unit.
 template <size_t N> double read(const std::string &text, const Unit (&units)[N]) {
     char *end = nullptr;
     const double number = std::strtod(text.c_str(), &end);

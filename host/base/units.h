@@ -1,4 +1,5 @@
-// Amounts as the command line takes them. Each throws Error that quotes what it read and says what is possible.
+// Amounts with units, as the command line takes them. Each function throws Error that quotes the text and says what is
+// possible.
 #pragma once
 
 #include <string>

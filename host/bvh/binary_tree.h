@@ -1,4 +1,4 @@
-// A binary bounding volume hierarchy by the surface area heuristic: what the 8-wide tree is collapsed from.
+// A binary bounding volume hierarchy by the surface area heuristic. The 8-wide tree is collapsed from it.
 #pragma once
 
 #include "bvh/early_split.h"
@@ -8,26 +8,27 @@
 
 namespace opal {
 
-constexpr uint BLOCK_SIZE = 8; // references of a leaf at most
+constexpr uint block_size = 8; // the most primitives of a leaf: the triangles of a TriangleBlock
 
 struct BinaryNode {
     Box box;
-    uint first, count; // its range of the references
-    uint left;         // its right child is left + 1; 0: a leaf
+    uint first, count; // the node's range of BinaryTree::primitives
+    uint left;         // index of the left child; the right one is left + 1; 0: a leaf
 };
 
 struct BinaryTree {
-    std::unique_ptr<BinaryNode[]> nodes; // root first, parents before their children
+    std::unique_ptr<BinaryNode[]> nodes; // the root first, parents before their children
     uint node_count = 0;
-    std::vector<Reference> references;
+    std::vector<BuildPrimitive> primitives; // each node's are contiguous
 };
 
-// Costs are counted in blocks: ceil(n / BLOCK_SIZE) times the area. Leaves hold 1 to BLOCK_SIZE references; smaller
-// sets are split where that makes the areas of both parts together smaller. There is at least one reference.
-BinaryTree build_binary_tree(std::vector<Reference> references);
+// Builds the tree top down. The cost of n primitives in a box is ceil(n / block_size) times its area, the cost of the
+// blocks that they will fill. Leaves hold 1 to block_size primitives; a set that fits a leaf is still split where both
+// parts together have less area. `primitives` must not be empty.
+BinaryTree build_binary_tree(std::vector<BuildPrimitive> primitives);
 
-// Orders the set into halves along the longest axis of its middles; returns the size of the first one, the larger by
-// one.
-std::size_t halve(std::span<Reference> set);
+// Partitions the set at the median of its centres along their longest axis. Returns the size of the first half, which
+// is the larger one where the count is odd.
+std::size_t halve_at_median(std::span<BuildPrimitive> set);
 
 } // namespace opal

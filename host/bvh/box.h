@@ -1,5 +1,5 @@
-// Axis-aligned boxes of floats, and the normals of triangles of floats. Vertices are floats, so that minimum and
-// maximum are exact and nothing needs padding.
+// Points, axis-aligned boxes and triangle normals in flattened units. Coordinates are floats: the minimum and the
+// maximum of floats are exact, so that boxes need no padding.
 #pragma once
 
 #include "base/math.h"
@@ -10,12 +10,16 @@
 
 namespace opal {
 
-struct Box {
-    static constexpr float INF = std::numeric_limits<float>::infinity();
-    std::array<float, 3> lo, hi;
-    static constexpr Box empty() { return {{INF, INF, INF}, {-INF, -INF, -INF}}; }
+// A position in flattened units.
+using Point3f = std::array<float, 3>;
 
-    void add(const std::array<float, 3> &point) {
+struct Box {
+    static constexpr float infinity = std::numeric_limits<float>::infinity();
+    Point3f lo, hi;
+    // The box of no point: adding a point makes it that point's.
+    static constexpr Box empty() { return {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}}; }
+
+    void add(const Point3f &point) {
         for (int axis = 0; axis < 3; axis++) {
             lo[axis] = std::min(lo[axis], point[axis]);
             hi[axis] = std::max(hi[axis], point[axis]);
@@ -27,19 +31,19 @@ struct Box {
             hi[axis] = std::max(hi[axis], box.hi[axis]);
         }
     }
-    // Half the surface. Not for an empty box.
+    // Half the surface area, in squared units. The box must not be empty.
     float half_area() const {
         const float x = hi[0] - lo[0], y = hi[1] - lo[1], z = hi[2] - lo[2];
         return x * y + y * z + z * x;
     }
-    // Twice the middle.
-    float middle2(int axis) const { return lo[axis] + hi[axis]; }
-    std::array<float, 3> middle2() const { return {middle2(0), middle2(1), middle2(2)}; }
+    // Twice the centre: comparisons of centres need no division.
+    float twice_center(int axis) const { return lo[axis] + hi[axis]; }
+    Point3f twice_center() const { return {twice_center(0), twice_center(1), twice_center(2)}; }
 };
 
-// (b - a) x (c - a), exact but for the rounding of double. Its length is twice the triangle's area.
-inline Vec3 normal_of(const std::array<float, 3> &a, const std::array<float, 3> &b, const std::array<float, 3> &c) {
-    const auto edge = [&a](const std::array<float, 3> &p) {
+// The unnormalised normal (b - a) x (c - a), computed in double. Its length is twice the triangle's area.
+inline Vec3 normal_of(const Point3f &a, const Point3f &b, const Point3f &c) {
+    const auto edge = [&a](const Point3f &p) {
         return Vec3{double(p[0]) - a[0], double(p[1]) - a[1], double(p[2]) - a[2]};
     };
     return cross(edge(b), edge(c));

@@ -9,11 +9,12 @@
 namespace opal {
 namespace {
 
-Box child_box(const BvhNode &node, int child) {
+Box box_of_child(const BvhNode &node, int child) {
     return {{node.lo[0][child], node.lo[1][child], node.lo[2][child]},
             {node.hi[0][child], node.hi[1][child], node.hi[2][child]}};
 }
 
+// As Box::half_area, but in double.
 double half_area(const Box &box) {
     const double x = double(box.hi[0]) - box.lo[0], y = double(box.hi[1]) - box.lo[1],
                  z = double(box.hi[2]) - box.lo[2];
@@ -25,25 +26,24 @@ double half_area(const Box &box) {
 Bvh build_bvh(const TriangleSoup &soup) {
     if (soup.corners.empty())
         return {{empty_node()}, pack_blocks(soup)};
-    BinaryTree tree = build_binary_tree(references_of(soup));
+    BinaryTree tree = build_binary_tree(split_primitives(soup));
     optimise_by_reinsertion(tree);
     return collapse(tree, soup);
 }
 
 BvhNode empty_node() {
     BvhNode node;
-    std::fill_n(&node.lo[0][0], 3 * WIDTH, Box::INF);
-    std::fill_n(&node.hi[0][0], 3 * WIDTH, -Box::INF);
-    std::fill_n(node.child, WIDTH, OPAL_NONE);
+    std::fill_n(&node.lo[0][0], 3 * node_width, Box::infinity);
+    std::fill_n(&node.hi[0][0], 3 * node_width, -Box::infinity);
+    std::fill_n(node.child, node_width, OPAL_NONE);
     return node;
 }
 
 TriangleBlock pack_block(const TriangleSoup &soup, const uint *ids, uint count) {
     TriangleBlock block{};
-    for (uint place = 0; place < BLOCK_SIZE; place++) {
+    for (uint place = 0; place < block_size; place++) {
         block.id[place] = place < count ? ids[place] : OPAL_NONE;
         for (int corner = 0; corner < 3 && count > 0; corner++) {
-            // An unused place is the first corner thrice.
             const uint vertex = place < count ? soup.corners[ids[place]][corner] : soup.corners[ids[0]][0];
             for (int axis = 0; axis < 3; axis++)
                 block.vertex[corner][axis][place] = soup.vertices[vertex][axis];
@@ -54,11 +54,11 @@ TriangleBlock pack_block(const TriangleSoup &soup, const uint *ids, uint count) 
 
 std::vector<TriangleBlock> pack_blocks(const TriangleSoup &soup) {
     std::vector<TriangleBlock> packed;
-    std::array<uint, BLOCK_SIZE> ids;
+    std::array<uint, block_size> ids;
     uint count = 0;
     for (uint id = 0; id < soup.corners.size(); id++) {
         ids[count++] = id;
-        if (count == BLOCK_SIZE)
+        if (count == block_size)
             packed.push_back(pack_block(soup, ids.data(), std::exchange(count, 0)));
     }
     if (count > 0 || packed.empty())
@@ -68,14 +68,14 @@ std::vector<TriangleBlock> pack_blocks(const TriangleSoup &soup) {
 
 double sah_cost(const Bvh &bvh) {
     Box root = Box::empty();
-    for (int child = 0; child < WIDTH; child++)
+    for (int child = 0; child < node_width; child++)
         if (bvh.nodes[0].child[child] != OPAL_NONE)
-            root.add(child_box(bvh.nodes[0], child));
-    double sum = NODE_COST * half_area(root);
+            root.add(box_of_child(bvh.nodes[0], child));
+    double sum = node_cost * half_area(root);
     for (const BvhNode &node : bvh.nodes)
-        for (int child = 0; child < WIDTH; child++)
+        for (int child = 0; child < node_width; child++)
             if (node.child[child] != OPAL_NONE)
-                sum += half_area(child_box(node, child)) * (node.child[child] & OPAL_LEAF ? BLOCK_COST : NODE_COST);
+                sum += half_area(box_of_child(node, child)) * (node.child[child] & OPAL_LEAF ? block_cost : node_cost);
     return sum / half_area(root);
 }
 

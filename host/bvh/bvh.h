@@ -1,41 +1,42 @@
 // The 8-wide bounding volume hierarchy over triangles, and the blocks of eight triangles that are its leaves.
 #pragma once
 
+#include "bvh/box.h"
 #include "shared/types.h"
 
-#include <array>
 #include <vector>
 
 namespace opal {
 
-// Triangles that share vertices, in the flattened scene's units. None of them is degenerate.
+// An indexed triangle mesh in flattened units. No triangle is degenerate.
 struct TriangleSoup {
-    std::vector<std::array<float, 3>> vertices;
-    std::vector<std::array<uint, 3>> corners; // index = id of the triangle
+    std::vector<Point3f> vertices;
+    std::vector<std::array<uint, 3>> corners; // three vertex indices for each triangle id
 };
 
 struct Bvh {
-    std::vector<BvhNode> nodes;        // parents before their children; the first is the root, and always there
-    std::vector<TriangleBlock> blocks; // never empty
+    std::vector<BvhNode> nodes;        // the root first, parents before their children; never empty
+    std::vector<TriangleBlock> blocks; // the leaves; never empty
 };
 
-// Cost of visiting a node and of testing a block, in the units of sah_cost.
-constexpr double NODE_COST = 1, BLOCK_COST = 1;
+// Costs in the surface area heuristic: a visit of a node and the test of a block.
+constexpr double node_cost = 1, block_cost = 1;
 
-// Binary tree by the surface area heuristic, improved by reinsertion, collapsed to 8 children by dynamic programming
-// (Ylitie, Karras, Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", section 3.2).
-// Every triangle is in a block, or its parts are in several, where references_of says so; levels_of(bvh) <=
-// OPAL_LEVELS. Without triangles: a root without children, one block of none.
+// Builds the tree in three steps: a binary tree by the surface area heuristic, reinsertion, and the collapse to 8
+// children by dynamic programming (Ylitie, Karras, Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through
+// Compressed Wide BVHs", section 3.2). A triangle that split_primitives cuts may be in several blocks, every other one
+// is in one block. levels_of(result) <= OPAL_LEVELS. An empty soup gives a root without children and one empty block.
 Bvh build_bvh(const TriangleSoup &soup);
 
-// Blocks in the order of the triangles, for scenes that need no tree; one empty block at least.
+// Packs all triangles into blocks in the order of their ids, for scenes without a tree. An empty soup gives one empty
+// block.
 std::vector<TriangleBlock> pack_blocks(const TriangleSoup &soup);
 
-// What a ray that meets the root's box is expected to cost (MacDonald and Booth 1990): the areas of the nodes and of
-// the leaves over the root's area, times NODE_COST and BLOCK_COST.
+// The expected cost of a ray that meets the root's box, by the surface area heuristic (MacDonald and Booth 1990): the
+// sum of all boxes' areas, times node_cost or block_cost, divided by the root's area.
 double sah_cost(const Bvh &bvh);
 
-// Nodes one below the other, root and all, where they are most.
+// The number of nodes on the longest path from the root, which counts as one.
 int levels_of(const Bvh &bvh);
 
 } // namespace opal

@@ -7,19 +7,21 @@
 namespace opal {
 namespace {
 
-// Triangles are cut where boxes waste more than MOSTLY of their area, until no part wastes more than SHARE of what a
-// triangle did on average. Scenes of balls, furniture and terrain waste 4 to 36 %, and lose if they are cut; veach_room
-// 78 %, and 96 % when it is turned out of the axes.
-constexpr double MOSTLY = 0.5, SHARE = 0.5;
+// Triangles are split in scenes whose boxes waste more than this share of their area. Scenes of balls, furniture and
+// terrain waste 4 to 36 % and are slower when split; veach_room wastes 78 %, and 96 % when turned out of the axes.
+constexpr double min_wasted_share = 0.5;
+// Parts are split until each wastes at most this share of the average waste of a whole triangle.
+constexpr double max_part_waste = 0.5;
 
-// What a box has of half its surface beyond that of a parallelogram's shadows along the axes; twice_area: the
-// parallelogram's normal of that length.
-double waste(const Box &box, Vec3 twice_area) {
+// The wasted part of a box's half surface area, which a ray can hit in vain: half_area minus twice the polygon's
+// projections onto the sides. The factor is 2 because even the best-filled box of a triangle is half empty. twice_area:
+// the polygon's normal, whose length is twice its area.
+double wasted_area(const Box &box, Vec3 twice_area) {
     return std::max(0.0,
                     double(box.half_area()) - std::abs(twice_area.x) - std::abs(twice_area.y) - std::abs(twice_area.z));
 }
 
-using Polygon = std::vector<Vec3>; // convex, of a triangle
+using Polygon = std::vector<Vec3>; // convex: a part of a triangle
 
 Vec3 twice_area(const Polygon &polygon) {
     Vec3 sum;
@@ -28,14 +30,14 @@ Vec3 twice_area(const Polygon &polygon) {
     return sum;
 }
 
-// Rounded outwards, but not beyond the box of what it is a part of.
+// The polygon's box, rounded outwards but clipped to the box of the whole triangle or part.
 Box box_of(const Polygon &polygon, const Box &whole) {
     Box box = Box::empty();
     for (Vec3 p : polygon)
         for (int axis = 0; axis < 3; axis++) {
             const float x = float(p[axis]);
-            box.lo[axis] = std::min(box.lo[axis], x > p[axis] ? std::nextafter(x, -Box::INF) : x);
-            box.hi[axis] = std::max(box.hi[axis], x < p[axis] ? std::nextafter(x, Box::INF) : x);
+            box.lo[axis] = std::min(box.lo[axis], x > p[axis] ? std::nextafter(x, -Box::infinity) : x);
+            box.hi[axis] = std::max(box.hi[axis], x < p[axis] ? std::nextafter(x, Box::infinity) : x);
         }
     for (int axis = 0; axis < 3; axis++) {
         box.lo[axis] = std::max(box.lo[axis], whole.lo[axis]);
@@ -44,9 +46,8 @@ Box box_of(const Polygon &polygon, const Box &whole) {
     return box;
 }
 
-// What of the polygon is on the side of a plane across an axis where sign * p[axis] <= sign * plane (Sutherland and
-// Hodgman 1974).
-Polygon cut(const Polygon &polygon, int axis, double plane, double sign) {
+// Clips the polygon to the half-space sign * p[axis] <= sign * plane (Sutherland and Hodgman 1974).
+Polygon clip(const Polygon &polygon, int axis, double plane, double sign) {
     Polygon part;
     for (std::size_t i = 0; i < polygon.size(); i++) {
         const Vec3 p = polygon[i], q = polygon[(i + 1) % polygon.size()];
@@ -59,29 +60,30 @@ Polygon cut(const Polygon &polygon, int axis, double plane, double sign) {
     return part;
 }
 
-// Cuts in halves along the longest axis until no box wastes more than `most`.
-void add_parts(const Polygon &polygon, const Reference &reference, double most, std::vector<Reference> &parts) {
-    const Box &box = reference.box;
+// Splits at the middle of the longest axis until no box wastes more than max_waste, in squared units of area.
+void add_parts(const Polygon &polygon, const BuildPrimitive &primitive, double max_waste,
+               std::vector<BuildPrimitive> &parts) {
+    const Box &box = primitive.box;
     int axis = 0;
     for (int other = 1; other < 3; other++)
         if (box.hi[other] - box.lo[other] > box.hi[axis] - box.lo[axis])
             axis = other;
     const float plane = box.lo[axis] / 2 + box.hi[axis] / 2;
-    if (waste(box, twice_area(polygon)) <= most || plane <= box.lo[axis] || plane >= box.hi[axis]) {
-        parts.push_back(reference);
+    if (wasted_area(box, twice_area(polygon)) <= max_waste || plane <= box.lo[axis] || plane >= box.hi[axis]) {
+        parts.push_back(primitive);
         return;
     }
     for (double sign : {1.0, -1.0}) {
-        const Polygon part = cut(polygon, axis, plane, sign);
+        const Polygon part = clip(polygon, axis, plane, sign);
         if (part.size() >= 3)
-            add_parts(part, {box_of(part, box), reference.triangle}, most, parts);
+            add_parts(part, {box_of(part, box), primitive.triangle}, max_waste, parts);
     }
 }
 
 } // namespace
 
-std::vector<Reference> whole_triangles(const TriangleSoup &soup) {
-    std::vector<Reference> whole(soup.corners.size());
+std::vector<BuildPrimitive> whole_primitives(const TriangleSoup &soup) {
+    std::vector<BuildPrimitive> whole(soup.corners.size());
     for (uint id = 0; id < soup.corners.size(); id++) {
         whole[id] = {Box::empty(), id};
         for (uint vertex : soup.corners[id])
@@ -90,32 +92,32 @@ std::vector<Reference> whole_triangles(const TriangleSoup &soup) {
     return whole;
 }
 
-std::vector<Reference> references_of(const TriangleSoup &soup) {
-    std::vector<Reference> whole = whole_triangles(soup);
-    const auto waste_of = [&](const Reference &reference) {
-        const auto &[a, b, c] = soup.corners[reference.triangle];
-        return waste(reference.box, normal_of(soup.vertices[a], soup.vertices[b], soup.vertices[c]));
+std::vector<BuildPrimitive> split_primitives(const TriangleSoup &soup) {
+    std::vector<BuildPrimitive> whole = whole_primitives(soup);
+    const auto wasted_area_of = [&](const BuildPrimitive &primitive) {
+        const auto &[a, b, c] = soup.corners[primitive.triangle];
+        return wasted_area(primitive.box, normal_of(soup.vertices[a], soup.vertices[b], soup.vertices[c]));
     };
-    double area = 0, wasted = 0;
-    for (const Reference &reference : whole) {
-        area += double(reference.box.half_area());
-        wasted += waste_of(reference);
+    double area = 0, waste = 0;
+    for (const BuildPrimitive &primitive : whole) {
+        area += double(primitive.box.half_area());
+        waste += wasted_area_of(primitive);
     }
-    if (wasted <= MOSTLY * area)
+    if (waste <= min_wasted_share * area)
         return whole;
-    const double most = SHARE * wasted / double(whole.size());
-    std::vector<Reference> parts;
-    for (const Reference &reference : whole) {
-        if (waste_of(reference) <= most) {
-            parts.push_back(reference);
+    const double max_waste = max_part_waste * waste / double(whole.size());
+    std::vector<BuildPrimitive> parts;
+    for (const BuildPrimitive &primitive : whole) {
+        if (wasted_area_of(primitive) <= max_waste) {
+            parts.push_back(primitive);
             continue;
         }
         Polygon triangle;
-        for (uint vertex : soup.corners[reference.triangle]) {
+        for (uint vertex : soup.corners[primitive.triangle]) {
             const auto &[x, y, z] = soup.vertices[vertex];
             triangle.push_back({x, y, z});
         }
-        add_parts(triangle, reference, most, parts);
+        add_parts(triangle, primitive, max_waste, parts);
     }
     return parts;
 }

@@ -1,4 +1,4 @@
-// What a tree is built over: boxes of triangles, or of parts of them.
+// The primitives that a tree is built over: one box for each triangle, or several for the parts of a long one.
 #pragma once
 
 #include "bvh/box.h"
@@ -6,17 +6,17 @@
 
 namespace opal {
 
-struct Reference {
-    Box box;
-    uint triangle;
+struct BuildPrimitive {
+    Box box;       // of the triangle, or of a part of it
+    uint triangle; // its id
 };
 
-// The box of every triangle.
-std::vector<Reference> whole_triangles(const TriangleSoup &soup);
+// One primitive for each triangle, in the order of the ids.
+std::vector<BuildPrimitive> whole_primitives(const TriangleSoup &soup);
 
-// The same where triangles fill their boxes. Where most of the boxes' area is empty, as where long triangles lie askew,
-// those that waste the most have a box for each of several parts (Ernst and Greiner 2007, "Early Split Clipping for
-// Bounding Volume Hierarchies"): every point of a triangle is in one of its boxes.
-std::vector<Reference> references_of(const TriangleSoup &soup);
+// Early split clipping (Ernst and Greiner 2007, "Early Split Clipping for Bounding Volume Hierarchies"): several
+// primitives for each triangle whose box is mostly empty, such as a long one at an angle to the axes. Every point of a
+// triangle is in one of its boxes. Where most boxes are well filled, the result is that of whole_primitives.
+std::vector<BuildPrimitive> split_primitives(const TriangleSoup &soup);
 
 } // namespace opal

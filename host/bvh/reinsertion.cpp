@@ -8,141 +8,144 @@
 namespace opal {
 namespace {
 
-// One of SHARE subtrees is tried, the largest ones, and MOST at most; trying more gained nothing that could be
-// measured.
-constexpr uint SHARE = 10, MOST = 20000;
+// The largest tenth of the subtrees is tried, but no more than max_tried; trying more gained nothing measurable.
+constexpr uint tried_divisor = 10, max_tried = 20000;
 
 class Optimiser {
 public:
-    explicit Optimiser(BinaryTree &goal) : tree(goal), nodes(goal.nodes.get()), parents(goal.node_count) {
-        for (uint i = 0; i < tree.node_count; i++)
-            if (nodes[i].left)
-                parents[nodes[i].left] = parents[nodes[i].left + 1] = i;
+    explicit Optimiser(BinaryTree &tree) : tree_(tree), nodes_(tree.nodes.get()), parents_(tree.node_count) {
+        for (uint i = 0; i < tree_.node_count; i++)
+            if (nodes_[i].left)
+                parents_[nodes_[i].left] = parents_[nodes_[i].left + 1] = i;
     }
 
     void run() {
-        std::vector<uint> order(tree.node_count);
+        std::vector<uint> order(tree_.node_count);
         std::iota(order.begin(), order.end(), 0u);
-        const auto end = order.begin() + std::min(tree.node_count / SHARE, MOST);
+        const auto end = order.begin() + std::min(tree_.node_count / tried_divisor, max_tried);
         const auto larger = [this](uint a, uint b) {
-            const float x = nodes[a].box.half_area(), y = nodes[b].box.half_area();
+            const float x = nodes_[a].box.half_area(), y = nodes_[b].box.half_area();
             return x > y || (x == y && a < b);
         };
         std::nth_element(order.begin(), end, order.end(), larger);
         std::sort(order.begin(), end, larger);
         for (auto node = order.begin(); node != end; ++node)
-            if (*node != 0 && parents[*node] != 0)
+            if (*node != 0 && parents_[*node] != 0)
                 try_move(*node); // children of the root stay
         reorder();
     }
 
 private:
-    BinaryTree &tree;
-    BinaryNode *nodes;
-    std::vector<uint> parents;
+    BinaryTree &tree_;
+    BinaryNode *nodes_;
+    std::vector<uint> parents_;
 
-    struct Place {
-        float gain; // of area, from all that lies above
+    // A node beside which the moved subtree could be inserted.
+    struct Insertion {
+        float gain; // decrease of the sum of areas, before the new parent's own area is added
         uint node;
     };
-    std::vector<Place> stack;
+    std::vector<Insertion> stack_;
 
     static uint sibling(uint node) { return node % 2 ? node + 1 : node - 1; } // pairs start at odd numbers
 
     void try_move(uint moved) {
-        const Box box = nodes[moved].box;
+        const Box box = nodes_[moved].box;
         const float area = box.half_area();
-        Place best{0, 0};
-        // Climb; at each ancestor look below its other child. `rest` is the ancestor's box without the moved subtree.
-        uint pivot = parents[moved], other = sibling(moved);
-        Box rest = nodes[other].box;
-        float gain = nodes[pivot].box.half_area();
+        Insertion best{0, 0};
+        // Climbs to the root and searches below the other child of each ancestor. `rest` is the ancestor's box without
+        // the moved subtree.
+        uint pivot = parents_[moved], other = sibling(moved);
+        Box rest = nodes_[other].box;
+        float gain = nodes_[pivot].box.half_area();
         for (;;) {
-            stack.push_back({gain, other});
-            while (!stack.empty()) {
-                const Place place = stack.back();
-                stack.pop_back();
-                if (place.gain - area <= best.gain)
-                    continue; // a box around it is no smaller than itself
-                const BinaryNode &at = nodes[place.node];
-                Box merged = at.box;
+            stack_.push_back({gain, other});
+            while (!stack_.empty()) {
+                const Insertion insertion = stack_.back();
+                stack_.pop_back();
+                if (insertion.gain - area <= best.gain)
+                    continue; // the merged box is at least as large as the moved one
+                const BinaryNode &node = nodes_[insertion.node];
+                Box merged = node.box;
                 merged.add(box);
-                const float here = place.gain - merged.half_area();
+                const float here = insertion.gain - merged.half_area();
                 if (here > best.gain)
-                    best = {here, place.node};
-                if (at.left == 0)
+                    best = {here, insertion.node};
+                if (node.left == 0)
                     continue;
-                const float below = here + at.box.half_area();
-                stack.push_back({below, at.left});
-                stack.push_back({below, at.left + 1});
+                const float below = here + node.box.half_area();
+                stack_.push_back({below, node.left});
+                stack_.push_back({below, node.left + 1});
             }
-            if (pivot != parents[moved]) {
-                rest.add(nodes[other].box);
-                gain += nodes[pivot].box.half_area() - rest.half_area();
+            if (pivot != parents_[moved]) {
+                rest.add(nodes_[other].box);
+                gain += nodes_[pivot].box.half_area() - rest.half_area();
             }
             if (pivot == 0)
                 break;
             other = sibling(pivot);
-            pivot = parents[pivot];
+            pivot = parents_[pivot];
         }
-        if (best.gain > 0 && best.node != sibling(moved) && best.node != parents[moved])
+        if (best.gain > 0 && best.node != sibling(moved) && best.node != parents_[moved])
             move(moved, best.node);
     }
 
-    // The sibling takes the parent's place; the parent's pair of nodes now holds `target` and `moved`, below target's
-    // place.
+    // The sibling moves up into its parent's place. The pair of nodes that this leaves free below `target` then holds
+    // target's old contents and the moved subtree.
     void move(uint moved, uint target) {
-        const uint beside = sibling(moved), parent = parents[moved];
-        const BinaryNode left_behind = nodes[beside], old_target = nodes[target];
-        nodes[target].left = std::min(moved, beside);
-        nodes[beside] = old_target;
-        nodes[parent] = left_behind;
+        const uint other = sibling(moved), parent = parents_[moved];
+        const BinaryNode old_sibling = nodes_[other], old_target = nodes_[target];
+        nodes_[target].left = std::min(moved, other);
+        nodes_[other] = old_target;
+        nodes_[parent] = old_sibling;
         if (old_target.left)
-            parents[old_target.left] = parents[old_target.left + 1] = beside;
-        if (left_behind.left)
-            parents[left_behind.left] = parents[left_behind.left + 1] = parent;
-        parents[beside] = parents[moved] = target;
+            parents_[old_target.left] = parents_[old_target.left + 1] = other;
+        if (old_sibling.left)
+            parents_[old_sibling.left] = parents_[old_sibling.left + 1] = parent;
+        parents_[other] = parents_[moved] = target;
         refit(target);
         refit(parent);
     }
 
+    // Recomputes boxes and counts from `node` up to the root.
     void refit(uint node) {
-        for (;; node = parents[node]) {
-            if (const uint left = nodes[node].left) {
-                nodes[node].box = nodes[left].box;
-                nodes[node].box.add(nodes[left + 1].box);
-                nodes[node].count = nodes[left].count + nodes[left + 1].count;
+        for (;; node = parents_[node]) {
+            if (const uint left = nodes_[node].left) {
+                nodes_[node].box = nodes_[left].box;
+                nodes_[node].box.add(nodes_[left + 1].box);
+                nodes_[node].count = nodes_[left].count + nodes_[left + 1].count;
             }
             if (node == 0)
                 return;
         }
     }
 
-    // Numbers nodes and references anew: parents before their children, each subtree's references side by side.
+    // Renumbers nodes and primitives, so that parents come before their children and each subtree's primitives are
+    // contiguous.
     void reorder() {
-        auto sorted = std::make_unique_for_overwrite<BinaryNode[]>(tree.node_count);
-        std::vector<Reference> references;
-        references.reserve(tree.references.size());
+        auto sorted = std::make_unique_for_overwrite<BinaryNode[]>(tree_.node_count);
+        std::vector<BuildPrimitive> primitives;
+        primitives.reserve(tree_.primitives.size());
         std::vector<std::pair<uint, uint>> todo{{0, 0}}; // from, to
         uint count = 1;
         while (!todo.empty()) {
             const auto [from, to] = todo.back();
             todo.pop_back();
-            BinaryNode node = nodes[from];
-            const uint first = uint(references.size());
+            BinaryNode node = nodes_[from];
+            const uint first = uint(primitives.size());
             if (node.left) {
                 todo.push_back({node.left + 1, count + 1});
                 todo.push_back({node.left, count});
                 node.left = std::exchange(count, count + 2);
             } else {
-                const auto begin = tree.references.begin() + node.first;
-                references.insert(references.end(), begin, begin + node.count);
+                const auto begin = tree_.primitives.begin() + node.first;
+                primitives.insert(primitives.end(), begin, begin + node.count);
             }
             node.first = first;
             sorted[to] = node;
         }
-        tree.nodes = std::move(sorted);
-        tree.references = std::move(references);
+        tree_.nodes = std::move(sorted);
+        tree_.primitives = std::move(primitives);
     }
 };
 

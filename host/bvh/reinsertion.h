@@ -1,14 +1,14 @@
-// Makes a good binary tree better by moving subtrees to where they cost less.
+// Optimisation of a binary tree by reinsertion: subtrees move to where the sum of all boxes' areas is smaller.
 #pragma once
 
 #include "bvh/binary_tree.h"
 
 namespace opal {
 
-// Takes the subtrees of largest area in turn, looks for the place where the sum of all areas falls most, and moves them
-// there (Bittner, Hapala, Havran 2013, "Fast Insertion-Based Optimization of Bounding Volume Hierarchies"; the search
-// is that of Meister and Bittner 2018, "Parallel Reinsertion for Bounding Volume Hierarchy Optimization"). Leaves stay
-// as they are.
+// Moves the subtrees of largest area, one after the other, to the place where the sum of all areas falls most (Bittner,
+// Hapala, Havran 2013, "Fast Insertion-Based Optimization of Bounding Volume Hierarchies"; the search is that of
+// Meister and Bittner 2018, "Parallel Reinsertion for Bounding Volume Hierarchy Optimization"). Leaves keep their
+// primitives.
 void optimise_by_reinsertion(BinaryTree &tree);
 
 } // namespace opal

@@ -37,13 +37,6 @@ void row(const char *name, fmt::format_string<Arguments...> text, Arguments &&..
 
 std::string color_text(const Color &c) { return fmt::format("{:g} {:g} {:g}", c[0], c[1], c[2]); }
 
-const char *bsdf_name(unsigned kind) {
-#define OPAL_NAME(name) #name,
-    static const char *const names[] = {OPAL_BSDFS(OPAL_NAME)};
-#undef OPAL_NAME
-    return names[kind];
-}
-
 std::string filter_text(const Filter &filter) {
 #define OPAL_NAME(name) #name,
     static const char *const names[] = {OPAL_FILTERS(OPAL_NAME)};
@@ -77,11 +70,8 @@ void print_scene(const SceneDescription &scene, const FlatScene &flat) {
     std::map<std::string, size_t> bsdfs, emitters;
     for (const Mesh &mesh : scene.meshes)
         ++bsdfs[bsdf_name(mesh.bsdf.record.kind)];
-#define OPAL_NAME(name) #name,
-    static const char *const emitter_names[] = {OPAL_EMITTERS(OPAL_NAME)};
-#undef OPAL_NAME
     for (const EmitterRecord &emitter : flat.emitters)
-        ++emitters[emitter_names[emitter.kind]];
+        ++emitters[emitter_name(emitter.kind)];
     row("bsdfs", "{} ({} different)", counts_text(bsdfs), flat.bsdfs.size());
     row("emitters", "{}", counts_text(emitters));
     for (const PointLight &light : scene.point_lights)
@@ -170,7 +160,7 @@ int run_inspect(const InspectOptions &options) {
     print_strategy(scene, lanes);
     print_buffers(flat);
     print_features(flat.features);
-    for (const std::string &line : sanity_warnings(scene, flat))
+    for (const std::string &line : precision_warnings(scene, flat))
         warn(line);
     if (options.bench)
         print_savings(options, scene);

@@ -80,7 +80,7 @@ StopRule stop_rule(const Options &o) {
 
 // What was asked for and what was reached; the interval holds the true mean luminance with that confidence. Errors and
 // interval are null where pixels have no sample: what those would add to the mean is unknown.
-nlohmann::json stop_json(const StopRule &rule, const Stopped &stopped, const Film &film, double seconds) {
+nlohmann::json stop_json(const StopRule &rule, const StopResult &stopped, const Film &film, double seconds) {
     const FilmStatistics s = statistics_of(film);
     const double half = stats::normal_quantile(0.5 + confidence / 2) * s.stderr_luminance;
     const double reached = s.empty_pixels ? INFINITY : s.mean_luminance > 0 ? s.stderr_luminance / s.mean_luminance : 0;
@@ -158,8 +158,8 @@ nlohmann::json choose_strategy(SceneDescription &scene, const Device &device, co
     const std::vector<Candidate> candidates = parse_strategies(scene, {"course"}, {});
     std::vector<Pilot> pilots;
     for (const Candidate &c : candidates) {
-        Measured measured(device, c, sources, device.info.type == "cpu" ? Clock::cpu : Clock::kernel);
-        pilots.push_back(run_pilot(measured, seed, pilot_seconds));
+        CompiledStrategy strategy(device, c, sources, device.info.type == "cpu" ? Clock::cpu : Clock::kernel);
+        pilots.push_back(run_pilot(strategy, seed, pilot_seconds));
     }
     const std::vector<double> costs = pilot_costs(pilots);
     const size_t best = size_t(std::min_element(costs.begin(), costs.end()) - costs.begin());
@@ -234,7 +234,7 @@ int run(const Options &o, const CLI::App &app) {
 
     watch_interrupts();
     const double pixels = double(scene.camera.width) * scene.camera.height;
-    Stopped stopped;
+    StopResult stopped;
     {
         const unsigned most = rule.given() && !app.count("--spp") ? most_samples : scene.spp;
         std::optional<Progress> progress; // none where nobody knows yet how much there is to do

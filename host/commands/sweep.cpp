@@ -1,5 +1,6 @@
 // opal sweep: error against time of several strategies on one scene.
 #include "base/command_line.h"
+#include "base/hash.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/read_file.h"
@@ -34,25 +35,24 @@ struct Options {
     bool quiet = false;
 };
 
-// FNV-1a (Fowler, Noll, Vo) over the scene's text, its resolved strategy and its meshes.
+// Identity of what a sweep measures: a hash over the scene's text, its resolved strategy and its meshes.
 std::string hash_of(const SceneDescription &scene) {
     std::string bytes = read_file(scene.file);
     bytes += dump(strategy_json(scene));
     for (const Mesh &mesh : scene.meshes)
         if (const auto *m = std::get_if<TriangleMesh>(&mesh.shape))
             bytes.append(reinterpret_cast<const char *>(m->positions.data()), m->positions.size() * sizeof(Vec3));
-    unsigned long long hash = 0xcbf29ce484222325ull;
-    for (unsigned char byte : bytes)
-        hash = (hash ^ byte) * 0x100000001b3ull;
-    return fmt::format("{:016x}", hash);
+    Fnv1a hash;
+    hash.add(std::as_bytes(std::span(bytes)));
+    return fmt::format("{:016x}", hash.value());
 }
 
 void check_numbers(const Options &o) {
     if (o.replicates < 2)
         throw Error(fmt::format("--replicates {}: an interval needs at least 2", o.replicates));
     for (unsigned spp : o.spp)
-        if (spp < 1 || spp > pilot_first)
-            throw Error(fmt::format("--spp {}: possible are 1 to {}", spp, pilot_first));
+        if (spp < 1 || spp > first_pilot_sample)
+            throw Error(fmt::format("--spp {}: possible are 1 to {}", spp, first_pilot_sample));
 }
 
 Image read_reference(const std::string &file, const SceneDescription &scene) {
@@ -214,7 +214,7 @@ int run(const Options &o) {
     for (const Candidate &c : candidates) // all rows now: references to them stay good
         record.strategy(c.name, c.label).device = c.device;
     save(record, plan.folder); // the folder can be written
-    for (const Part part : {measure_points, take_pictures})
+    for (const Part part : {measure_points, render_equal_time_images})
         for (size_t d = 0; d < devices.size(); d++) {
             std::vector<Candidate> own;
             std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(own),

@@ -26,7 +26,7 @@ Whole whole_of(const stats::Estimate &e, size_t channel) {
     return w;
 }
 
-// Relative to the mean of both, in the channel that sees it best.
+// Relative to the mean of both, in the channel where it is least.
 double detectable_bias(const stats::Estimate &a, const stats::Estimate &b, double level, double power) {
     double smallest = std::numeric_limits<double>::infinity();
     for (size_t c = 0; c < a.mean.size(); c++) {
@@ -39,12 +39,13 @@ double detectable_bias(const stats::Estimate &a, const stats::Estimate &b, doubl
     return smallest;
 }
 
-// A strategy, or all that share a choice: how well does "these against the others" tell which pairs disagree?
+// A group of strategies (one, or all that share a choice), and how well "group against the rest" explains which pairs
+// disagree.
 struct Suspect {
     std::string name;
     std::vector<bool> members;
-    size_t separated = 0, explained = 0; // pairs between members and others, and those of them that disagree
-    double score = 0;                    // F1 of both: 1 where exactly these pairs disagree
+    size_t separated = 0, explained = 0; // pairs between the group and the rest; how many of them disagree
+    double score = 0;                    // F1 of both; 1 if exactly these pairs disagree
 };
 
 std::vector<Suspect> suspects_of(const std::vector<StrategyRender> &renders) {

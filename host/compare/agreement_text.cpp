@@ -1,4 +1,4 @@
-// What an Agreement says: to people and as JSON.
+// An Agreement as text and as JSON.
 #include "compare/agreement.h"
 
 #include <fmt/format.h>

@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char *channels[] = {"R", "G", "B"};
 
-// The value that the fraction q of the finite ones lies below; 0 where there is none.
+// The quantile q of the finite values; 0 if there are none.
 double quantile(std::vector<float> values, double q) {
     std::erase_if(values, [](float v) { return !std::isfinite(v); });
     if (values.empty())
@@ -21,7 +21,7 @@ double quantile(std::vector<float> values, double q) {
     return *at;
 }
 
-// A function of R, G, B of each pixel.
+// A layer made of R, G, B of each pixel.
 template <class F> std::vector<float> per_pixel(const Image &image, F f) {
     const auto &r = image.get("R").values, &g = image.get("G").values, &b = image.get("B").values;
     std::vector<float> values(r.size());

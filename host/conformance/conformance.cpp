@@ -20,13 +20,6 @@ Vec3 direction_at(double degrees) {
     return {std::sin(theta), 0, std::cos(theta)};
 }
 
-std::string name_of(const Bsdf &bsdf) {
-    static const char *const names[] = {
-#define OPAL_BSDF_NAME(name) #name,
-        OPAL_BSDFS(OPAL_BSDF_NAME)};
-    return names[bsdf.record.kind];
-}
-
 class TestRun {
 public:
     TestRun(const TestDescription &test, const Device &device, const ConformanceOptions &options,
@@ -111,7 +104,8 @@ private:
                                 weights.add(luminance({w.x, w.y, w.z}));
                             }
                         });
-        judge_mean(fmt::format("{} at {:g} degrees", name_of(test_.bsdfs[id]), angle), weights.sample(), "");
+        judge_mean(fmt::format("{} at {:g} degrees", bsdf_name(test_.bsdfs[id].record.kind), angle), weights.sample(),
+                   "");
     }
 
     // Chi-square of directions, for a wi drawn in proportion to its cosine.
@@ -122,8 +116,8 @@ private:
         const int nu = test_.resolution, nv = 2 * test_.resolution;
         ConformanceCase result;
         result.is_mean = false;
-        result.name =
-            fmt::format("{} at {:.2f} degrees", name_of(test_.bsdfs[id]), std::asin(sine) * 180 / std::numbers::pi);
+        result.name = fmt::format("{} at {:.2f} degrees", bsdf_name(test_.bsdfs[id].record.kind),
+                                  std::asin(sine) * 180 / std::numbers::pi);
         result.samples = test_.sample_count > 0 ? test_.sample_count : 5000.0 * nu * nv;
         stats::ChiSquareOptions options;
         options.min_expected = test_.min_expected_frequency;

@@ -20,10 +20,6 @@ struct WarpRow {
 #define OPAL_LOBE_ROW(name, domain, parameter, otherwise) {#name, DomainKind::domain},
 constexpr WarpRow warps[] = {OPAL_WARPS(OPAL_WARP_ROW, OPAL_WARP_ROW, OPAL_LOBE_ROW)};
 
-constexpr const char *bsdf_names[] = {
-#define OPAL_BSDF_NAME(name) #name,
-    OPAL_BSDFS(OPAL_BSDF_NAME)};
-
 constexpr double turn = 2 * std::numbers::pi;
 
 double angle_of(Vec3 w) { // azimuth in [0, 2 pi)
@@ -87,7 +83,7 @@ Sampled sampled_warp(KernelProbe &probe, int warp, float parameter) {
 Sampled sampled_bsdf(KernelProbe &probe, unsigned id, Vec3 wi) {
     const BsdfRecord bsdf = probe.scene().bsdfs.at(id);
     Sampled sampled;
-    sampled.name = bsdf_names[bsdf.kind];
+    sampled.name = bsdf_name(bsdf.kind);
     if (is_discrete(int(bsdf.kind)))
         throw Error(fmt::format("a {} is discrete: its directions have no density to compare with", sampled.name));
     sampled.domain = &stats::domain(DomainKind::sphere);

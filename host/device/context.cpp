@@ -22,7 +22,7 @@ bool contains(const std::string &text, const std::string &part) {
     return lower(text).find(lower(part)) != std::string::npos;
 }
 
-// Mesa's software rasterisers call themselves GPUs or CPUs; a ray caster got wrong hits on them (DESIGN section 5).
+// Mesa's software rasterisers call themselves GPUs or CPUs, and end long loops early (scripts/README.md).
 bool is_software_rasteriser(const DeviceInfo &info) {
     return contains(info.name, "llvmpipe") || contains(info.name, "softpipe") || contains(info.name, "swrast");
 }

@@ -11,31 +11,35 @@ namespace opal::extremes {
 
 namespace {
 
-// Correct: energy within this of double precision, or within three standard errors of the difference, which may not
-// itself exceed the noise of the picture; no sample NaN or infinite; leaks and self-shadows no more than a ray in a
-// million.
-constexpr double sigmas = 3, rays_astray = 1e-6;
+// The limits of fault_of. Single precision is correct if
+// - the energy agrees with double within the row's tolerance or `max_sigmas` standard errors of the difference,
+// - that standard error is within the tolerance or `max_noise_ratio` times the picture's noise,
+// - the energy agrees with the truth within `truth_tolerance` or the noise,
+// - no sample is NaN or infinite, and no more than a ray in a million leaks or shadows itself.
+constexpr double max_sigmas = 3, max_noise_ratio = 2, truth_tolerance = 1e-3, max_stray_rays = 1e-6;
+constexpr double tiny = 1e-300; // keeps divisors positive
 
-Film render(const Row &row, SceneDescription scene, double value, const Device &device, const How &how, MathMode math) {
-    const unsigned side = row.value_is == Value::spp ? 1 : row.side.value_or(how.side);
-    const unsigned spp = row.value_is == Value::spp ? unsigned(value) : row.spp.value_or(how.spp);
-    const unsigned first = row.value_is == Value::first_sample ? unsigned(value) : 0;
-    if (row.value_is != Value::height)
+Film render(const StressRow &row, SceneDescription scene, double value, const Device &device,
+            const StressSettings &settings, MathMode math) {
+    const unsigned side = row.value_means == ValueMeaning::spp ? 1 : row.side.value_or(settings.side);
+    const unsigned spp = row.value_means == ValueMeaning::spp ? unsigned(value) : row.spp.value_or(settings.spp);
+    const unsigned first = row.value_means == ValueMeaning::first_sample ? unsigned(value) : 0;
+    if (row.value_means != ValueMeaning::height)
         scene.camera.width = scene.camera.height = int(side);
     scene.spp = spp;
     RenderOptions options;
     options.build.math = math;
     options.build.lanes = lanes_for(device.info, 0, math);
-    options.sources = how.sources;
+    options.sources = settings.sources;
     Renderer renderer(device, flatten(scene, options.build.lanes), options);
-    renderer.restart(how.seed, first);
+    renderer.restart(settings.seed, first);
     renderer.render(first + spp);
     return renderer.film();
 }
 
 double mean_of(const Film &film, size_t p) { return film.count[p] ? luminance(film.sum[p]) / film.count[p] : 0; }
 
-// Standard error of the mean difference of two films, by the differences of their pixels.
+// The standard error of the mean difference of two films, from the differences of their pixels.
 double paired_error(const Film &a, const Film &b) {
     const size_t n = a.sum.size();
     double sum = 0, squares = 0;
@@ -47,58 +51,58 @@ double paired_error(const Film &a, const Film &b) {
     return n < 2 ? 0 : std::sqrt(std::max(0.0, squares - sum * sum / double(n)) / (double(n) * double(n - 1)));
 }
 
-double relative(double a, double b) { return a == b ? 0 : std::abs(a - b) / std::max(std::abs(b), 1e-300); }
+double relative(double a, double b) { return a == b ? 0 : std::abs(a - b) / std::max(std::abs(b), tiny); }
 
-std::string fault_of(const Row &row, const Point &p) {
+std::string fault_of(const StressRow &row, const StressPoint &p) {
     std::vector<std::string> faults;
     if (p.invalid_single)
         faults.push_back(
             fmt::format("{} samples NaN or infinite{}", p.invalid_single, p.invalid_oracle ? " (in double too)" : ""));
-    if (!(p.error <= std::max(row.tolerance, sigmas * p.paired_noise)))
+    if (!(p.error <= std::max(row.tolerance, max_sigmas * p.paired_noise)))
         faults.push_back(fmt::format("energy off by {:.2g}", p.error));
-    if (!(p.paired_noise <= std::max(row.tolerance, 2 * p.noise)))
+    if (!(p.paired_noise <= std::max(row.tolerance, max_noise_ratio * p.noise)))
         faults.push_back(fmt::format("pixels off by {:.2g}", p.paired_noise));
-    if (p.single_truth &&
-        !(*p.single_truth <=
-          std::max(1e-3, sigmas * std::sqrt(2.0) * p.noise))) // the truth may be a picture with noise, too
+    const double truth_noise = max_sigmas * std::sqrt(2.0) * p.noise; // the truth may be a picture with the same noise
+    if (p.single_truth && !(*p.single_truth <= std::max(truth_tolerance, truth_noise)))
         faults.push_back(fmt::format("off the truth by {:.2g}", *p.single_truth));
-    if (p.leaks.value_or(0) > rays_astray)
+    if (p.leaks.value_or(0) > max_stray_rays)
         faults.push_back(fmt::format("{:.2g} of the rays leak", *p.leaks));
-    if (p.shadows.value_or(0) > rays_astray)
+    if (p.shadows.value_or(0) > max_stray_rays)
         faults.push_back(fmt::format("{:.2g} of the rays meet their own plane", *p.shadows));
     return fmt::format("{}", fmt::join(faults, ", "));
 }
 
-Point measure_probe(const Row &row, double value, const Device &device, const How &how) {
-    const Probed probed = row.probe(value, device, how);
-    Point p{};
+StressPoint measure_numeric(const StressRow &row, double value, const Device &device, const StressSettings &settings) {
+    const NumericResult result = row.numeric(value, device, settings);
+    StressPoint p{};
     p.value = value;
-    p.single = probed.single;
-    p.oracle = probed.oracle;
-    p.error = probed.error;
-    p.leaks = probed.leaks;
-    p.invalid_single = probed.invalid_single;
-    p.invalid_oracle = probed.invalid_oracle;
+    p.single = result.single;
+    p.oracle = result.oracle;
+    p.error = result.error;
+    p.leaks = result.leaks;
+    p.invalid_single = result.invalid_single;
+    p.invalid_oracle = result.invalid_oracle;
     p.fault = fault_of(row, p);
     return p;
 }
 
-Point measure(const Row &row, double value, const Device &device, const How &how, std::optional<double> truth) {
-    if (row.probe)
-        return measure_probe(row, value, device, how);
+StressPoint measure(const StressRow &row, double value, const Device &device, const StressSettings &settings,
+                    std::optional<double> truth) {
+    if (row.numeric)
+        return measure_numeric(row, value, device, settings);
     const auto film = [&](const SceneDescription &scene, MathMode math) {
-        return render(row, scene, value, device, how, math);
+        return render(row, scene, value, device, settings, math);
     };
     const Film single = film(row.picture(value), MathMode::precise),
                oracle = film(row.picture(value), MathMode::double_precision);
     const FilmStatistics s = statistics_of(single), o = statistics_of(oracle);
-    Point p{};
+    StressPoint p{};
     p.value = value;
     p.single = s.mean_luminance;
     p.oracle = o.mean_luminance;
-    p.noise = s.stderr_luminance / std::max(std::abs(s.mean_luminance), 1e-300);
+    p.noise = s.stderr_luminance / std::max(std::abs(s.mean_luminance), tiny);
     p.error = relative(p.single, p.oracle);
-    p.paired_noise = paired_error(single, oracle) / std::max(std::abs(p.oracle), 1e-300);
+    p.paired_noise = paired_error(single, oracle) / std::max(std::abs(p.oracle), tiny);
     if (truth) {
         p.single_truth = relative(p.single, *truth);
         p.oracle_truth = relative(p.oracle, *truth);
@@ -113,14 +117,15 @@ Point measure(const Row &row, double value, const Device &device, const How &how
     return p;
 }
 
-bool promised(const Row &row, double value) { return value >= row.promised_from && value <= row.promised_to; }
+bool promised(const StressRow &row, double value) { return value >= row.promised_from && value <= row.promised_to; }
 
-// The longest stretch of points without fault that holds the start.
-void find_working_range(Sweep &s) {
+// Sets the working range: the longest run of points without a fault around the start.
+void find_working_range(StressResult &s) {
     s.from = s.to = std::nan("");
-    const auto start = std::min_element(s.points.begin(), s.points.end(), [&](const Point &a, const Point &b) {
-        return std::abs(a.value - s.row->start) < std::abs(b.value - s.row->start);
-    });
+    const auto start =
+        std::min_element(s.points.begin(), s.points.end(), [&](const StressPoint &a, const StressPoint &b) {
+            return std::abs(a.value - s.row->start) < std::abs(b.value - s.row->start);
+        });
     if (start == s.points.end() || !start->fault.empty())
         return;
     auto first = start, last = start;
@@ -134,32 +139,33 @@ void find_working_range(Sweep &s) {
 
 } // namespace
 
-Sweep sweep(const Row &row, const Device &device, const How &how, size_t stride) {
-    Sweep s{&row, {}, 0, 0, true};
+StressResult run_stress(const StressRow &row, const Device &device, const StressSettings &settings, size_t stride) {
+    StressResult s{&row, {}, 0, 0, true};
     std::optional<double> invariant;
     if (row.invariant)
         invariant =
-            statistics_of(render(row, row.picture(row.start), row.start, device, how, MathMode::double_precision))
+            statistics_of(render(row, row.picture(row.start), row.start, device, settings, MathMode::double_precision))
                 .mean_luminance;
     for (size_t i = 0; i < row.values.size(); i++) {
         const double value = row.values[i];
         if (i % stride && i + 1 < row.values.size() && value != row.start && value != row.promised_from &&
             value != row.promised_to)
             continue;
-        s.points.push_back(measure(row, value, device, how, row.truth ? std::optional(row.truth(value)) : invariant));
+        s.points.push_back(
+            measure(row, value, device, settings, row.truth ? std::optional(row.truth(value)) : invariant));
         s.kept = s.kept && (!promised(row, value) || s.points.back().fault.empty());
     }
     find_working_range(s);
     return s;
 }
 
-std::string breaking_point(const Sweep &s) {
+std::string breaking_point(const StressResult &s) {
     if (std::isnan(s.from))
         return fmt::format("wrong at the start, {:g}", s.row->start);
     std::string words = fmt::format("correct from {:g} to {:g}", s.from, s.to);
     std::string beyond;
     for (size_t i = 0; i < s.points.size(); i++) {
-        const auto correct = [&](const Point &p) { return p.value >= s.from && p.value <= s.to; };
+        const auto correct = [&](const StressPoint &p) { return p.value >= s.from && p.value <= s.to; };
         const bool neighbour =
             (i > 0 && correct(s.points[i - 1])) || (i + 1 < s.points.size() && correct(s.points[i + 1]));
         if (!correct(s.points[i]) && neighbour)

@@ -1,4 +1,4 @@
-// One sweep: a row's scenes rendered in single and in double precision with the same random numbers.
+// The run of a stress test: a row's scenes are rendered in single and in double precision with the same random numbers.
 #pragma once
 
 #include "device/program.h"
@@ -7,31 +7,34 @@
 
 namespace opal::extremes {
 
-struct Point {
+// The measurements at one value of a row.
+struct StressPoint {
     double value;          // of the row's parameter
-    double single, oracle; // mean luminance of the two pictures
-    double noise;          // relative standard error of `single`, as rendered
-    double error;          // |single - oracle| / oracle: what rounding did to the energy
-    double paired_noise;   // relative standard error of single - oracle: what a few paths sent elsewhere explain
-    std::optional<double> single_truth,
-        oracle_truth; // relative errors against the truth or, of an invariant row, the start's oracle
-    std::optional<double> leaks,
-        shadows; // shares of rays, single precision: through closed walls; into their own plane
+    double single, oracle; // mean luminance in single and in double precision, or the figure of a numeric row
+    double noise;          // relative standard error of `single`
+    double error;          // |single - oracle| / oracle, the error of the energy by rounding
+    double paired_noise;   // relative standard error of single - oracle; paths that rounding sends elsewhere cause it
+    // Relative errors against the truth or, in an invariant row, against double precision at the start.
+    std::optional<double> single_truth, oracle_truth;
+    // Shares of rays, in single precision, that pass closed walls and that hit the plane which they start from.
+    std::optional<double> leaks, shadows;
     unsigned long long invalid_single, invalid_oracle;
-    std::string fault; // why single precision is not correct here; empty: it is
+    std::string fault; // why single precision is wrong here; empty: it is correct
 };
 
-struct Sweep {
-    const Row *row;
-    std::vector<Point> points;
-    double from, to; // around the start, where single precision is correct; NaN: not even there
-    bool kept;       // what is promised holds
+// The measurements of a row.
+struct StressResult {
+    const StressRow *row;
+    std::vector<StressPoint> points;
+    double from, to; // the working range: values around the start without a fault; NaN: the start has one
+    bool kept;       // no value of the promised range has a fault
 };
 
-// Renders the row on `device`, every `stride`th value and the last. Error: what the renderer throws.
-Sweep sweep(const Row &row, const Device &device, const How &how, size_t stride);
+// Runs the row on `device` with every `stride`th value, the last one, the start and the ends of the promised range.
+// Throws the renderer's Error.
+StressResult run_stress(const StressRow &row, const Device &device, const StressSettings &settings, size_t stride);
 
-// "correct from 1e-05 to 1e+06; at 1e-06: energy off by 0.0031, leaks 2e-05"
-std::string breaking_point(const Sweep &sweep);
+// The working range and the faults next to it: "correct from 1e-05 to 1e+06; at 1e-06 energy off by 0.0031".
+std::string breaking_point(const StressResult &result);
 
 } // namespace opal::extremes

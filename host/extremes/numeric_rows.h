@@ -1,4 +1,4 @@
-// Sweeps that need no picture: functions of the kernels asked one by one, in single and in double precision.
+// Stress tests without a picture: single functions of the kernels, called in single and in double precision.
 #pragma once
 
 #include "device/program.h"
@@ -7,37 +7,40 @@
 
 namespace opal::extremes {
 
-struct How {
-    unsigned side = 64, spp = 256,
-             seed = 1; // pixels a side; a probe takes as many numbers or rays as the picture would have samples
+// The size of a stress test.
+struct StressSettings {
+    unsigned side = 64, spp = 256, seed = 1; // the picture: pixels along each side, samples of each pixel
     const Sources *sources = &Sources::embedded();
+    // Samples of the picture; a numeric row uses as many numbers or rays.
     unsigned long long paths() const { return (unsigned long long)(side)*side * spp; }
 };
 
-struct Probed {
-    double single, oracle; // a figure in both precisions
-    double error;          // the largest difference of anything they return
-    unsigned long long invalid_single, invalid_oracle;
-    std::optional<double> leaks = {};
+// The measurement of a numeric row at one value.
+struct NumericResult {
+    double single, oracle;                             // the row's figure in single and in double precision
+    double error;                                      // largest difference of any returned value
+    unsigned long long invalid_single, invalid_oracle; // counts of values that are NaN, infinite or out of range
+    std::optional<double> leaks = {};                  // share of rays that pass a closed mesh
 };
 
-// Every warp, BSDF and light at `u` and all pairs of it with other numbers. The figure: the mean height of what is
-// drawn.
-Probed probe_numbers(double u, const Device &device, const How &how);
+// Samples every warp, BSDF and light with pairs of `u` and other random numbers. Figure: the mean third component of
+// the sampled points, directions and weights.
+NumericResult measure_numbers(double u, const Device &device, const StressSettings &settings);
 
-// Every sampler's last numbers of `spp` samples. The figure: their mean. Invalid: outside [0, 1).
-Probed probe_samplers(double spp, const Device &device, const How &how);
+// Draws the numbers of every sampler for samples from the first to the last of `spp`. Figure: their mean. Invalid
+// numbers are outside [0, 1).
+NumericResult measure_samplers(double spp, const Device &device, const StressSettings &settings);
 
-// Reflectance of glass from inside, sin^2 of the angle being `ulps` beyond that of total reflection, by which share of
-// samples is reflected.
-Probed probe_critical_angle(double ulps, const Device &device, const How &how);
+// Reflectance of glass from inside near the critical angle; the sine of the angle is `ulps` floats beyond that of total
+// reflection. Figure: the share of reflected samples.
+NumericResult measure_critical_angle(double ulps, const Device &device, const StressSettings &settings);
 
-// Rays at the edges and vertices of closed meshes of size `scale`, each turned and moved anyhow. The figure: the share
-// that is lost.
-Probed probe_edges(double scale, const Device &device, const How &how);
+// Shoots rays at the edges and vertices of closed meshes of size `scale`, which are rotated and moved at random.
+// Figure: the share of rays that miss.
+NumericResult measure_edges(double scale, const Device &device, const StressSettings &settings);
 
-// The same without the oracle, for counts that take long: how many of at least `rays` are lost.
-unsigned long long lost_at_edges(double scale, unsigned long long rays, const Device &device, const How &how,
-                                 MathMode math);
+// The same in one precision, for long runs: the number of misses of at least `rays` rays.
+unsigned long long lost_at_edges(double scale, unsigned long long rays, const Device &device,
+                                 const StressSettings &settings, MathMode math);
 
 } // namespace opal::extremes

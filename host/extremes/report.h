@@ -1,4 +1,4 @@
-// What the sweeps found, as a table, as JSON and as a plot.
+// The results of stress tests as a table, as JSON and as a plot.
 #pragma once
 
 #include "extremes/measure.h"
@@ -7,8 +7,8 @@
 
 namespace opal::extremes {
 
-std::string table_of(const Sweep &sweep); // lines for the terminal
-nlohmann::json json_of(const Sweep &sweep);
-std::string svg_of(const std::vector<Sweep> &sweeps); // error against parameter, a panel a row
+std::string table_of(const StressResult &result); // lines for the terminal
+nlohmann::json json_of(const StressResult &result);
+std::string svg_of(const std::vector<StressResult> &results); // error against parameter, one panel for each row
 
 } // namespace opal::extremes

@@ -9,7 +9,7 @@ namespace opal::extremes {
 
 namespace {
 
-// 10^from ... 10^to, a value every `step` decades.
+// The powers of ten from 10^from to 10^to, `step` decades apart.
 std::vector<double> decades(int from, int to, int step = 1) {
     std::vector<double> values;
     for (int i = from; i <= to; i += step)
@@ -27,10 +27,11 @@ std::vector<double> reversed(std::vector<double> a) { return {a.rbegin(), a.rend
 std::function<SceneDescription(double)> scaled(SceneDescription (*scene)()) {
     return [scene](double factor) { return moved(scene(), factor, {}); };
 }
-std::function<SceneDescription(double)> shifted(SceneDescription (*scene)()) { // in sizes: a room has side 2
+// Moves the scene away from the origin by so many of its sizes; a room has side 2.
+std::function<SceneDescription(double)> shifted(SceneDescription (*scene)()) {
     return [scene](double sizes) { return moved(scene(), 1, normalize(Vec3{1, 0.7, -0.4}) * (2 * sizes)); };
 }
-// In a corner of a world that is 1 / factor times as large, which two far triangles span.
+// The scene as a detail of a world that is 1 / factor times as large, which two far triangles span.
 std::function<SceneDescription(double)> as_detail(SceneDescription (*scene)()) {
     return [scene](double factor) {
         SceneDescription detail = moved(scene(), factor, {0.61, -0.37, 0.53});
@@ -46,7 +47,8 @@ SceneDescription floor_under(Mesh lamp, const BsdfRecord &floor, double seen_fro
     return path_traced({made_of(quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), floor), std::move(lamp)},
                        camera({0.1, seen_from, -0.9}, {0.1, 0, 0.1}, 40), 3);
 }
-Mesh lamp_over(Vec3 at, double side, double radiance) { // faces down
+// A square light that faces down, with its middle at `at`.
+Mesh lamp_over(Vec3 at, double side, double radiance) {
     return light(Parallelogram{at - Vec3{side / 2, 0, side / 2}, {side, 0, 0}, {0, 0, side}}, radiance);
 }
 
@@ -56,12 +58,13 @@ SceneDescription light_of_size(double side) {
 SceneDescription light_at_distance(double d) {
     return floor_under(lamp_over({0, d, 0}, 1, d > 1 ? d * d : 1), diffuse(0.5), 0.3);
 }
-SceneDescription light_edge_on(double degrees) { // between its plane and the middle of the floor
+// A light seen nearly edge-on: `degrees` between its plane and the floor's.
+SceneDescription light_edge_on(double degrees) {
     const double a = degrees * (std::numbers::pi / 180), s = std::sin(a), c = std::cos(a);
     return floor_under(light(Parallelogram{{-1.2, 0.5, -0.3}, {0.6 * c, 0.6 * s, 0}, {0, 0, 0.6}}, 1 / s),
                        diffuse(0.5));
 }
-// A light that stands on the floor, or above a gap.
+// A light that stands upright on the floor, or above a gap.
 SceneDescription light_standing(double gap) {
     return floor_under(light(quad({-0.3, gap, 0.5}, {0, 0.5, 0}, {0.6, 0, 0}), 1), diffuse(0.5));
 }
@@ -70,7 +73,8 @@ SceneDescription light_of_radiance(double radiance) {
 }
 
 SceneDescription rough_floor(double alpha) { return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4), microfacet(alpha)); }
-SceneDescription grazed_floor(double degrees) { // above the floor's plane
+// A glossy floor seen from `degrees` above its plane.
+SceneDescription grazed_floor(double degrees) {
     return floor_under(lamp_over({0, 0.6, 0.5}, 0.5, 4), microfacet(0.1), std::tan(degrees * (std::numbers::pi / 180)));
 }
 SceneDescription phong_floor(double exponent) { return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4), phong(exponent)); }
@@ -83,8 +87,8 @@ SceneDescription glass_cube(double ior) {
     return moved(scene, 1, {});
 }
 
-// Paths are not cut short by chance, so that each sample is the sum of the series itself.
-SceneDescription furnace(double darkness, unsigned max_depth) { // 1 - albedo
+// A furnace of albedo 1 - darkness and radiance 1. Without roulette each sample is the sum of the geometric series.
+SceneDescription furnace(double darkness, unsigned max_depth) {
     SceneDescription scene = path_traced({made_of(cube({}, 1, true), diffuse(1 - darkness))},
                                          camera({0.1, 0.2, -0.3}, {0.3, 0, 1}, 70), max_depth);
     scene.meshes[0].radiance = Color{1, 1, 1};
@@ -92,13 +96,14 @@ SceneDescription furnace(double darkness, unsigned max_depth) { // 1 - albedo
     scene.strategy[AXIS_rr] = CHOICE_rr_off;
     return scene;
 }
-double furnace_truth(double darkness,
-                     unsigned max_depth) { // of the albedo in single precision, which is what the scene holds
+// The sum of albedo^k, k < max_depth, for the albedo as the scene holds it, in single precision.
+double furnace_truth(double darkness, unsigned max_depth) {
     const double albedo = float(1 - darkness);
     return albedo < 1 ? -std::expm1(max_depth * std::log(albedo)) / (1 - albedo) : max_depth;
 }
-unsigned all_bounces(double darkness) { return darkness < 1e-4 ? 20000 : unsigned(20 / darkness); }
-SceneDescription bright_furnace(double darkness) { return furnace(darkness, all_bounces(darkness)); }
+// The bounces after which less than e^-20 of the series remains, or 20000.
+unsigned enough_bounces(double darkness) { return darkness < 1e-4 ? 20000 : unsigned(20 / darkness); }
+SceneDescription bright_furnace(double darkness) { return furnace(darkness, enough_bounces(darkness)); }
 SceneDescription deep_furnace(double depth) { return furnace(0.1, unsigned(depth)); }
 
 SceneDescription seen_through(double degrees) {
@@ -112,10 +117,10 @@ SceneDescription clipped_near(double distance) {
     return scene;
 }
 
-// The room with other walls than its first mesh, a cube.
+// The room with `walls`, given as a cube of half side 1, in the place of its own cube.
 SceneDescription room_of(TriangleMesh walls) {
     SceneDescription scene = room();
-    const TriangleMesh old = std::get<TriangleMesh>(scene.meshes[0].shape); // its corners say how the room is turned
+    const TriangleMesh old = std::get<TriangleMesh>(scene.meshes[0].shape); // its corners give the room's axes
     const Vec3 o = old.positions[0], x = (old.positions[1] - o) * 0.5, y = (old.positions[2] - o) * 0.5,
                z = (old.positions[4] - o) * 0.5;
     for (Vec3 &p : walls.positions)
@@ -128,7 +133,8 @@ SceneDescription slivered_walls(double aspect) { return occlusion_of(slivered_ro
 SceneDescription speckled_room(double area) { return room_of(cube_with_specks(area)); }
 SceneDescription speckled_walls(double area) { return occlusion_of(speckled_room(area)); }
 
-// Every other copy of a mesh of quadrilaterals has them cut along the other diagonal: in one plane, but for rounding.
+// Adds copies of all reflecting opaque meshes. Every other copy has its quadrilaterals cut along the other diagonal, so
+// that triangles differ but lie in one plane up to rounding.
 SceneDescription with_copies(SceneDescription scene, double copies) {
     const size_t meshes = scene.meshes.size();
     for (int copy = 1; copy < int(copies); copy++)
@@ -137,8 +143,8 @@ SceneDescription with_copies(SceneDescription scene, double copies) {
             if (mesh.radiance || mesh.bsdf.record.kind == BSDF_dielectric)
                 continue;
             auto &triangles = std::get<TriangleMesh>(mesh.shape).triangles;
-            for (size_t t = 0; copy % 2 && t + 1 < triangles.size();
-                 t += 2) { // both have their first corner and their cut in common
+            // Each pair of triangles shares its first corner and its diagonal.
+            for (size_t t = 0; copy % 2 && t + 1 < triangles.size(); t += 2) {
                 const auto p = triangles[t], q = triangles[t + 1];
                 const bool forward = q[1].position == p[2].position;
                 const std::array around =
@@ -154,7 +160,7 @@ SceneDescription room_of_copies(double copies) { return with_copies(room(), copi
 SceneDescription walls_of_copies(double copies) { return with_copies(closed_walls(), copies); }
 SceneDescription plane_of_copies(double copies) { return with_copies(open_plane(), copies); }
 
-// A light of triangles side by side whose widths grow from one to the next, over 12 decades of area; from 0 on, where
+// A light of pairs of triangles side by side, whose widths grow over 12 decades. The narrow ones lie near 0, where
 // floats are dense.
 SceneDescription light_of_triangles(double count) {
     const unsigned n = unsigned(count);
@@ -183,17 +189,19 @@ SceneDescription many_lights(double count) {
     return scene;
 }
 
-SceneDescription glowing_wall(double) { // what every sample returns is exact: the sum must be, too
+// A wall of radiance 0.1, the only thing that a pixel sees: every sample is exact, so that their mean must be, too.
+SceneDescription glowing_wall(double) {
     return path_traced({light(quad({-1, -1, 0}, {0, 2, 0}, {2, 0, 0}), 0.1)}, camera({0, 0, -1}, {}, 40), 1);
 }
-SceneDescription glowing_column(double height) { // the picture: one pixel wide
+// The same, in a picture one pixel wide and `height` pixels high.
+SceneDescription glowing_column(double height) {
     SceneDescription scene = glowing_wall(0);
     scene.camera.width = 1;
     scene.camera.height = int(height);
     scene.camera.fov = 2 * std::atan(0.5 / height) * (180 / std::numbers::pi);
     return scene;
 }
-double glow(double) { return double(0.1f); }
+double glow_truth(double) { return double(0.1f); }
 
 SceneDescription room_by_sobol(double) {
     SceneDescription scene = room();
@@ -203,8 +211,8 @@ SceneDescription room_by_sobol(double) {
 
 } // namespace
 
-const std::vector<Row> &rows() {
-    static const std::vector<Row> table = {
+const std::vector<StressRow> &stress_rows() {
+    static const std::vector<StressRow> table = {
         {.name = "scale",
          .stretched = "size of the scene",
          .values = decades(-6, 6),
@@ -268,7 +276,7 @@ const std::vector<Row> &rows() {
          .start = 1,
          .promised_from = 1e-4,
          .promised_to = 1e4,
-         .probe = probe_edges},
+         .numeric = measure_edges},
         {.name = "light-size",
          .stretched = "side of a light at distance 1",
          .values = decades(-6, 3),
@@ -332,7 +340,7 @@ const std::vector<Row> &rows() {
          .stretched = "sine of the angle beyond total reflection, ulp",
          .values = {-1e6, -1e5, -1e4, -1e3, -100, -10, -2, -1, 0, 1, 2, 10, 100},
          .start = -1e6,
-         .probe = probe_critical_angle},
+         .numeric = measure_critical_angle},
         {.name = "furnace",
          .stretched = "1 - albedo, all bounces; below 1e-4 the first 20000",
          .values = {1, 0.5, 0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-7, 0},
@@ -340,10 +348,10 @@ const std::vector<Row> &rows() {
          .promised_from = 1e-4,
          .promised_to = 1,
          .picture = bright_furnace,
-         .truth = [](double d) { return furnace_truth(d, all_bounces(d)); },
+         .truth = [](double d) { return furnace_truth(d, enough_bounces(d)); },
          .tolerance = 1e-3,
          .side = 4,
-         .spp = 4}, // a sum of 1e4 terms in one float; without roulette there is no noise to hide it in
+         .spp = 4}, // tolerance: a float sums 1e4 terms, and there is no noise without roulette
         {.name = "depth",
          .stretched = "segments of the longest path, albedo 0.9",
          .values = {1, 2, 10, 100, 65535, 65536, 1e6, 0x1p31, 4294967295.0},
@@ -375,14 +383,14 @@ const std::vector<Row> &rows() {
          .start = 0.25,
          .promised_from = 0,
          .promised_to = 1,
-         .probe = probe_numbers},
+         .numeric = measure_numbers},
         {.name = "samplers",
          .stretched = "samples of a pixel, all samplers, their numbers from the first to the last",
          .values = {1, 2, 3, 1 << 16, 1 << 24, 0x1p31 - 1, 0x1p32 - 1},
          .start = 2,
          .promised_from = 1,
          .promised_to = 0x1p32 - 1,
-         .probe = probe_samplers},
+         .numeric = measure_samplers},
         {.name = "late-samples",
          .stretched = "first of a pixel's samples, Sobol",
          .values = {0, 1 << 16, 1 << 24, 0x1p31, 0x1p32 - 65536},
@@ -391,7 +399,7 @@ const std::vector<Row> &rows() {
          .promised_to = 0x1p32 - 65536,
          .picture = room_by_sobol,
          .invariant = true,
-         .value_is = Value::first_sample},
+         .value_means = ValueMeaning::first_sample},
         {.name = "light-triangles",
          .stretched = "triangle pairs of a light, areas over 12 decades",
          .values = joined(decades(0, 5), {5e5}),
@@ -414,9 +422,9 @@ const std::vector<Row> &rows() {
          .promised_from = 1,
          .promised_to = 1e6,
          .picture = glowing_column,
-         .truth = glow,
+         .truth = glow_truth,
          .spp = 4,
-         .value_is = Value::height},
+         .value_means = ValueMeaning::height},
         {.name = "samples",
          .stretched = "samples of one pixel, all of 0.1",
          .values = {1, 1 << 10, 1 << 20, 1 << 24, 1 << 26},
@@ -424,8 +432,8 @@ const std::vector<Row> &rows() {
          .promised_from = 1,
          .promised_to = 1 << 26,
          .picture = glowing_wall,
-         .truth = glow,
-         .value_is = Value::spp},
+         .truth = glow_truth,
+         .value_means = ValueMeaning::spp},
     };
     return table;
 }

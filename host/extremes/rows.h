@@ -1,4 +1,4 @@
-// The table of what `opal extremes` stretches: one row a parameter.
+// The table of stress tests of `opal extremes`: each row stretches one parameter over many decades.
 #pragma once
 
 #include "extremes/numeric_rows.h"
@@ -12,26 +12,28 @@
 
 namespace opal::extremes {
 
-enum class Value { of_scene, spp, height, first_sample }; // what a row's value is beside a parameter of its scene
+// The meaning of a row's value: a parameter of its scene, or an option of the render.
+enum class ValueMeaning { scene_parameter, spp, height, first_sample };
 
-struct Row {
-    std::string name;           // as --row takes it
-    std::string stretched;      // what, with its unit
-    std::vector<double> values; // in the order of the sweep
-    double start;               // where arithmetic is easy: the working range is told from here
-    double promised_from =
-        std::numeric_limits<double>::quiet_NaN();         // single precision must agree with double in between;
-    double promised_to = promised_from;                   // NaN: nothing is promised
-    std::function<SceneDescription(double)> picture = {}; // or
-    Probed (*probe)(double, const Device &, const How &) = nullptr;
-    bool invariant = false;                                         // the picture should be the same for every value
-    std::function<double(double)> truth = {};                       // its mean, where that is known
-    std::function<SceneDescription(double)> closed = {}, open = {}; // as closed_walls and open_plane; empty: not asked
-    double tolerance = 1e-4;                                        // of the energy, where that is more than the noise
-    std::optional<unsigned> side = {}, spp = {};                    // instead of --side, --spp
-    Value value_is = Value::of_scene;                               // spp: of one pixel
+struct StressRow {
+    std::string name;           // for --row
+    std::string stretched;      // description of the parameter, with its unit
+    std::vector<double> values; // in the order of the run
+    double start;               // a harmless value; the working range is grown from it
+    // The range of values in which single precision must agree with double; NaN: nothing is promised.
+    double promised_from = std::numeric_limits<double>::quiet_NaN(), promised_to = promised_from;
+    // Either a scene is rendered, or functions of the kernels are called.
+    std::function<SceneDescription(double)> picture = {};
+    NumericResult (*numeric)(double, const Device &, const StressSettings &) = nullptr;
+    bool invariant = false;                   // all values should give the same picture
+    std::function<double(double)> truth = {}; // mean luminance of the picture, where it is known
+    // Scenes that count leaks and self-shadows, like closed_walls and open_plane; empty: not counted.
+    std::function<SceneDescription(double)> closed = {}, open = {};
+    double tolerance = 1e-4;                     // relative error of the energy that is allowed beyond noise
+    std::optional<unsigned> side = {}, spp = {}; // override --side and --spp
+    ValueMeaning value_means = ValueMeaning::scene_parameter; // spp: the picture has one pixel
 };
 
-const std::vector<Row> &rows();
+const std::vector<StressRow> &stress_rows();
 
 } // namespace opal::extremes

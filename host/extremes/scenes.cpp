@@ -6,8 +6,8 @@ namespace opal::extremes {
 
 namespace {
 
-const Transform turned =
-    Transform::rotate({1, 2, 3}, 34) * Transform::rotate({0, 1, 0}, 21); // so that nothing is exact by chance
+// An arbitrary rotation, so that no coordinate is exact by chance.
+const Transform rotation = Transform::rotate({1, 2, 3}, 34) * Transform::rotate({0, 1, 0}, 21);
 
 TriangleMesh moved(TriangleMesh mesh, const Transform &by) {
     for (Vec3 &p : mesh.positions)
@@ -165,7 +165,7 @@ SceneDescription room() {
                               made_of(cube({-0.4, -0.3, 0.2}, 0.2, false), dielectric(1.5)),
                               light(Parallelogram{{-0.4, 0.97, -0.4}, {0.8, 0, 0}, {0, 0, 0.8}}, 6)},
                              camera({0.1, 0.05, -0.97}, {0, -0.2, 1}, 85), 8),
-                 turned);
+                 rotation);
 }
 
 SceneDescription occlusion_of(SceneDescription scene) {
@@ -179,7 +179,7 @@ SceneDescription closed_walls() { return occlusion_of(room()); }
 SceneDescription open_plane() {
     return occlusion_of(moved(path_traced({made_of(quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), diffuse(0.5))},
                                           camera({0.1, 0.6, -0.5}, {0.05, 0, 0.1}, 30), 1),
-                              turned));
+                              rotation));
 }
 
 SceneDescription moved(SceneDescription scene, double factor, Vec3 offset) {

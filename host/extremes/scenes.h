@@ -1,14 +1,14 @@
-// Scenes that the sweeps of `opal extremes` stretch. All in memory, in plain units: a room has half side 1.
+// The scenes that the stress tests of `opal extremes` stretch. A room has half side 1.
 #pragma once
 
 #include "scene/scene.h"
 
 namespace opal::extremes {
 
-// A camera at `from` that looks at `to`, with that full horizontal angle in degrees; box filter, the resolution set
-// later.
+// A camera at `from` that looks at `to`. fov: full horizontal angle, degrees. The caller sets the resolution.
 Camera camera(Vec3 from, Vec3 to, double fov);
 
+// Materials of one parameter; the others have ordinary values.
 BsdfRecord diffuse(double albedo);
 BsdfRecord microfacet(double alpha);
 BsdfRecord phong(double exponent);
@@ -17,30 +17,30 @@ BsdfRecord dielectric(double int_ior);
 TriangleMesh mesh_of(std::vector<Vec3> positions, std::vector<std::array<unsigned, 3>> triangles);
 TriangleMesh quad(Vec3 o, Vec3 u, Vec3 v); // faces u x v
 TriangleMesh cube(Vec3 center, double half_side, bool inwards);
-// A cube of half side 1 that faces inwards, each side cut twice across, 1 / aspect from the edge.
+// A cube of half side 1 that faces inwards; each side is cut along both axes, 1 / aspect from the edge.
 TriangleMesh slivered_cube(double aspect);
-// The same cube; in the middle of each triangle lies one of `area` times its area.
+// The same cube with a small triangle in the middle of each triangle, of `area` times its area.
 TriangleMesh cube_with_specks(double area);
 Mesh made_of(std::variant<TriangleMesh, Parallelogram> shape, const BsdfRecord &bsdf);
-Mesh light(std::variant<TriangleMesh, Parallelogram> shape, double radiance); // reflects nothing
+Mesh light(std::variant<TriangleMesh, Parallelogram> shape, double radiance); // an area light that reflects nothing
 
-// Path tracing with MIS and at most `max_depth` segments.
+// A scene for path tracing with MIS and at most `max_depth` segments.
 SceneDescription path_traced(std::vector<Mesh> meshes, const Camera &camera, unsigned max_depth);
 
-// A closed room, no wall of which is parallel to an axis, with a light, a diffuse cube, a glossy floor and a pane of
-// glass.
+// A closed room with a light, a diffuse cube, a glass cube, a glossy floor and a glossy panel. No wall is parallel to
+// an axis.
 SceneDescription room();
-// Ambient occlusion within closed walls: every way out is blocked, so that all light is a leak.
+// Ambient occlusion in the closed room: the walls block every ray, so that the mean luminance is the share of leaks.
 SceneDescription closed_walls();
-// Ambient occlusion of a plane that fills the view: nothing blocks anything, so that what is missing from 1 shadows
-// itself.
+// Ambient occlusion of a plane that fills the view: nothing blocks a ray, so that 1 minus the mean luminance is the
+// share of self-shadows.
 SceneDescription open_plane();
-// Ambient occlusion instead of the scene's strategy.
+// The scene with ambient occlusion as its integrator.
 SceneDescription occlusion_of(SceneDescription scene);
 
-// The scene with every point moved, the camera too.
+// The scene with its meshes, lights and camera transformed.
 SceneDescription moved(SceneDescription scene, const Transform &by);
-// The same by p * factor + offset.
+// The same by the map p * factor + offset.
 SceneDescription moved(SceneDescription scene, double factor, Vec3 offset);
 
 } // namespace opal::extremes

@@ -8,7 +8,7 @@ namespace opal {
 
 namespace {
 
-// Variance of the mean of n values given their sum and sum of squares; not below 0, where rounding may leave it.
+// The variance of the mean of n values with this sum and sum of squares. Rounding cannot make it negative.
 double variance_of_mean(double sum, double squares, double n) {
     return n < 2 ? 0 : std::fmax(0, squares - sum * sum / n) / (n * (n - 1));
 }
@@ -18,7 +18,7 @@ double variance_of_mean(double sum, double squares, double n) {
 FilmStatistics statistics_of(const Film &film) {
     FilmStatistics s;
     double filled = 0, variance = 0;
-    double between = 0, between_squares = 0; // of pixels with one sample
+    double single_sum = 0, single_squares = 0; // over pixels with a single sample
     for (size_t p = 0; p < film.sum.size(); p++) {
         const double n = film.count[p];
         if (n == 0) {
@@ -33,8 +33,8 @@ FilmStatistics statistics_of(const Film &film) {
         variance += variance_of_mean(y, film.squares[p][3], n);
         if (n == 1) {
             s.single_sample_pixels++;
-            between += y;
-            between_squares += y * y;
+            single_sum += y;
+            single_squares += y * y;
         }
     }
     s.invalid = film.invalid;
@@ -44,7 +44,7 @@ FilmStatistics statistics_of(const Film &film) {
         c /= filled;
     s.mean_luminance = luminance(s.mean_rgb);
     const double singles = double(s.single_sample_pixels);
-    variance += singles * singles * variance_of_mean(between, between_squares, singles);
+    variance += singles * singles * variance_of_mean(single_sum, single_squares, singles);
     s.stderr_luminance = std::sqrt(variance) / filled;
     return s;
 }

@@ -1,4 +1,4 @@
-// What a render has gathered: sums over the finished samples of each pixel, and what follows from them.
+// The film: sums over the samples of each pixel, and the statistics and images that are computed from them.
 #pragma once
 
 #include "image/image.h"
@@ -8,34 +8,36 @@
 
 namespace opal {
 
+// A sample that was NaN or infinite: its pixel and its index.
 struct InvalidSample {
     unsigned x, y, sample;
-}; // was NaN or infinite
+};
 
-// Sums in double, as read back from the device's pairs of floats (cl/film/film.cl). Pixels row by row, top first.
+// Sums of radiances, which the device keeps as pairs of floats. Pixels are in rows from the top left.
 struct Film {
     int width = 0, height = 0;
     std::vector<std::array<double, 3>> sum;      // of R, G, B
     std::vector<std::array<double, 4>> squares;  // of R^2, G^2, B^2, luminance^2
     std::vector<std::array<double, 4>> weighted; // of w R, w G, w B, w; empty for the box filter
-    std::vector<unsigned> count;                 // valid samples
-    unsigned long long invalid = 0;              // samples left out because they were not finite
-    std::vector<InvalidSample> invalid_places;   // of the first few
+    std::vector<unsigned> count;                 // of valid samples
+    unsigned long long invalid = 0;              // number of samples left out because they were NaN or infinite
+    std::vector<InvalidSample> invalid_places;   // the first few of them
 };
 
-// A mean over the image with its standard error, from the variances of the pixels (each pixel is a stratum: the error
-// is of the image's noise, not of its content). A pixel with one sample has no variance within: that between all such
-// pixels is taken for it, an upper bound. Stratified and Sobol samples: an upper bound too.
+// The image's mean and its standard error. Each pixel is a stratum, so that the error measures noise, not content: it
+// combines the variances within the pixels. For pixels with a single sample the variance between all such pixels stands
+// in, an upper bound. For stratified and Sobol samples the error is an upper bound, too.
 struct FilmStatistics {
     std::array<double, 3> mean_rgb{};
     double mean_luminance = 0, stderr_luminance = 0;
     unsigned long long samples = 0, invalid = 0;
-    unsigned long long empty_pixels = 0; // without a valid sample: mean and error are of the others, not of the image
+    unsigned long long empty_pixels = 0; // pixels without a valid sample, which mean and error leave out
     unsigned long long single_sample_pixels = 0;
 };
 FilmStatistics statistics_of(const Film &film);
 
-// Layers R, G, B; with `variance` also variance.R, .G, .B: the variance of each pixel's mean.
+// The image with layers R, G, B (radiance) and, with `variance`, variance.R, .G, .B: the variance of each pixel's mean.
+// Pixels without samples are 0.
 Image image_of(const Film &film, bool variance);
 
 } // namespace opal

@@ -10,45 +10,47 @@
 namespace opal {
 namespace {
 
-constexpr int accept_bits = 24; // of a random number
+constexpr int random_bits = 24; // of a device's random number
 
-// Rounds `accept` up to what 24 bits can draw, and counts the pairs of random numbers that lead to each index.
-void state_what_is_drawn(std::span<const double> weights, AliasTable &table) {
-    const std::uint64_t count = weights.size(), all = std::uint64_t(1) << accept_bits;
-    const int row_bits = count > OPAL_ALIAS_ROWS ? 32 : 24;
+// Rounds `accept` up to multiples of 2^-24 and sets each probability to the share of pairs (k1, k2) that lead to the
+// index.
+void set_exact_probabilities(std::span<const double> weights, AliasTable &table) {
+    const std::uint64_t count = weights.size(), all = std::uint64_t(1) << random_bits;
+    const int row_bits = count > OPAL_ALIAS_ROWS ? 32 : random_bits;
     const auto first_of_row = [&](std::uint64_t row) { return ((row << row_bits) + count - 1) / count; };
     std::vector<std::uint64_t> pairs(count);
     for (std::uint64_t row = 0; row < count; row++) {
         const std::uint64_t numbers = first_of_row(row + 1) - first_of_row(row);
-        const double least = weights[row] > 0 ? std::ldexp(1.0, -accept_bits) : 0;
+        const double least = weights[row] > 0 ? std::ldexp(1.0, -random_bits) : 0;
         table.accept[row] = std::max(least, drawn_probability(table.accept[row]));
-        const auto kept = std::uint64_t(std::ldexp(table.accept[row], accept_bits));
+        const auto kept = std::uint64_t(std::ldexp(table.accept[row], random_bits));
         pairs[row] += numbers * kept;
         pairs[table.other[row]] += numbers * (all - kept);
     }
     for (std::uint64_t i = 0; i < count; i++)
-        table.probability[i] = std::ldexp(double(pairs[i]), -row_bits - accept_bits);
+        table.probability[i] = std::ldexp(double(pairs[i]), -row_bits - random_bits);
 }
 
 } // namespace
 
-double drawn_probability(double p) { return std::ldexp(std::ceil(std::ldexp(p, accept_bits)), -accept_bits); }
+double drawn_probability(double p) { return std::ldexp(std::ceil(std::ldexp(p, random_bits)), -random_bits); }
 
 AliasTable build_alias_table(std::span<const double> weights) {
     const std::size_t count = weights.size();
     AliasTable table{std::vector<double>(count), std::vector<double>(count, 1.0), std::vector<uint>(count)};
-    // Weights over many decades: divided by the largest they cannot overflow, and the sum's error stays relative.
+    // The sum of weights over the largest one: it cannot overflow, and by Kahan's summation its relative error stays
+    // small for weights over many decades.
     double largest = 0, sum = 0, lost = 0;
     for (double weight : weights)
         largest = std::max(largest, weight);
-    for (double weight : weights) { // Kahan
+    for (double weight : weights) {
         const double term = weight / largest - lost, next = sum + term;
         lost = (next - sum) - term;
         sum = next;
     }
     assert(count == 0 || (largest > 0 && std::isfinite(sum)));
 
-    // Fill each row that holds less than its share from one that holds more.
+    // Fills up each row with less than its share from a row with more.
     std::vector<double> share(count); // of a row, 1 on average
     std::vector<uint> small, large;
     for (uint i = 0; i < count; i++) {
@@ -68,8 +70,8 @@ AliasTable build_alias_table(std::span<const double> weights) {
             small.push_back(rich);
         }
     }
-    // What is left is 1 but for rounding, and keeps itself.
-    state_what_is_drawn(weights, table);
+    // The rows that remain have a share of 1 up to rounding; their `accept` stays 1.
+    set_exact_probabilities(weights, table);
     return table;
 }
 

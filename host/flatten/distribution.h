@@ -1,4 +1,4 @@
-// Discrete distributions that are drawn from in constant time.
+// Discrete distributions that are sampled in constant time, by the alias method.
 #pragma once
 
 #include "shared/glue.h"
@@ -8,22 +8,23 @@
 
 namespace opal {
 
-// p rounded up to the numbers that a random number of 24 bits may be below: u < p is drawn with this probability
-// (cl/core/rng.cl).
+// Rounds p in [0, 1] up to a multiple of 2^-24, the resolution of a device's random number u. The test u < p then
+// succeeds with exactly this probability. drawn_probability of rng.cl is the same on the device.
 double drawn_probability(double p);
 
-// Draw row i = floor(n k1 2^-b) by b random bits k1, keep it if k2 2^-24 < accept[i] by 24 others, else take other[i]:
-// index i then comes with probability[i], exactly, for the pairs (k1, k2) that lead to it are counted.
+// An alias table of n rows. A draw picks row i = floor(n k1 2^-b) by b random bits k1 and returns i if k2 2^-24 <
+// accept[i] by 24 further bits k2, else other[i]. The probability of each index is exact: build_alias_table counts the
+// pairs (k1, k2) that lead to it.
 struct AliasTable {
-    std::vector<double> probability; // weight / sum of weights, but for the rounding of accept and of floor(n k1 2^-b)
+    std::vector<double> probability; // of each index: weight / sum of weights, up to the rounding of accept and rows
     std::vector<double> accept;      // a multiple of 2^-24, 0 to 1
-    std::vector<uint> other;         // an index in [0, n)
+    std::vector<uint> other;         // in [0, n)
 };
 
-// The alias method of Vose 1991, "A linear algorithm for generating random numbers with a given distribution".
-// Weights are finite, not negative, and one is positive; an index of weight 0 is never drawn, every other is. No
-// weights: empty tables. b is 24, or 32 where there are more than OPAL_ALIAS_ROWS weights (cl/emitters/interface.cl
-// draws).
+// Builds an alias table (Vose 1991, "A linear algorithm for generating random numbers with a given distribution").
+// Weights must be finite and not negative, and one must be positive. An index of weight 0 is never drawn, every other
+// one can be. No weights give an empty table. b is 24, or 32 for more than OPAL_ALIAS_ROWS weights (alias_row on the
+// device).
 AliasTable build_alias_table(std::span<const double> weights);
 
 } // namespace opal

@@ -1,14 +1,14 @@
-// The tables of lights: what emits, and how it is chosen.
+// The tables of emitters and the probabilities with which light sampling chooses them.
 #pragma once
 
 #include "flatten/geometry.h"
 
 namespace opal {
 
-// Fills scene.emitters, scene.light_triangles and MeshRecord::emitter. Needs scene.triangles, scene.meshes and
-// scene.blocks. What emits nothing is no emitter. Areas are those of the triangles as rounded to float, summed in
-// double.
-void gather_emitters(const SceneDescription &description, const Frame &frame, const TriangleSoup &soup,
+// Fills scene.emitters, scene.light_triangles and MeshRecord::emitter; needs scene.triangles, scene.meshes and
+// scene.blocks. A light whose radiance or power is black is left out. Areas are in flattened units, those of the
+// rounded triangles, summed in double.
+void gather_emitters(const SceneDescription &description, const Flattening &flattening, const TriangleSoup &soup,
                      FlatScene &scene);
 
 } // namespace opal

@@ -19,33 +19,35 @@ Box box_of(const TriangleSoup &soup, uint id) {
     return box;
 }
 
-TriangleSoup only(const TriangleSoup &soup, const std::vector<uint> &ids) {
+// The soup of some of the triangles, numbered by their place in `ids`.
+TriangleSoup subset_of(const TriangleSoup &soup, const std::vector<uint> &ids) {
     TriangleSoup part{soup.vertices, {}};
     for (uint id : ids)
         part.corners.push_back(soup.corners[id]);
     return part;
 }
 
-// Blocks number triangles as the soup they were made of does; gives them their ids in the scene.
-void rename(std::vector<TriangleBlock> &blocks, const std::vector<uint> &ids) {
+// Replaces each id i in the blocks of a subset by ids[i], the triangle's id in the scene.
+void map_ids(std::vector<TriangleBlock> &blocks, const std::vector<uint> &ids) {
     for (TriangleBlock &block : blocks)
         for (uint &id : block.id)
             id = id == OPAL_NONE ? OPAL_NONE : ids[id];
 }
 
-using Point = std::array<float, 3>;
+Vec3 vec3(const Point3f &p) { return {p[0], p[1], p[2]}; }
 
-Vec3 vec3(const Point &p) { return {p[0], p[1], p[2]}; }
+// A bound of the rounding error of a coordinate of at most 1: four half-ulps of 2^-24.
+constexpr double rounding = 0x1p-22;
+// The limits of is_quadrilateral: the affine coordinates of d along a b and a c, which are 0 where c or b is a straight
+// corner, and the least height of a triangle in units of `rounding`.
+constexpr double min_affine = 0x1p-10, min_height = 1024;
 
-// What rounding may move a coordinate by that is at most 1, a few times over.
-constexpr double ROUNDING = 0x1p-22;
-
-// Are a b c and d c b a convex quadrilateral? With d in the plane up to rounding, no corner straight or nearly so, and
-// both triangles much wider than rounding.
-bool is_quadrilateral(const Point &a, const Point &b, const Point &c, const Point &d) {
+// Whether a b c and d c b make a convex quadrilateral: d must be in the plane of a b c up to rounding, no corner
+// straight or nearly so, and both triangles much higher than rounding.
+bool is_quadrilateral(const Point3f &a, const Point3f &b, const Point3f &c, const Point3f &d) {
     const Vec3 to_b = vec3(b) - vec3(a), to_c = vec3(c) - vec3(a), to_d = vec3(d) - vec3(a), n = cross(to_b, to_c);
     double largest = 0, longest2 = 0;
-    for (const Point *p : {&a, &b, &c, &d})
+    for (const Point3f *p : {&a, &b, &c, &d})
         for (float coordinate : *p)
             largest = std::max(largest, double(std::abs(coordinate)));
     for (Vec3 side : {to_b, to_c, to_d, to_c - to_b, to_d - to_b, to_d - to_c})
@@ -54,80 +56,82 @@ bool is_quadrilateral(const Point &a, const Point &b, const Point &c, const Poin
     const double far_b = dot(cross(to_d, to_c), n) / n2,
                  far_c = dot(cross(to_b, to_d), n) / n2; // d = a + far_b to_b + far_c to_c
     const double ratio = far_b + far_c - 1;              // of the areas
-    return std::abs(dot(to_d, n)) <= ROUNDING * largest * std::sqrt(n2) && std::min(far_b, far_c) >= 0x1p-10 &&
-           std::min(ratio, 1.0) * std::sqrt(n2 / longest2) >= 1024 * ROUNDING * largest;
+    return std::abs(dot(to_d, n)) <= rounding * largest * std::sqrt(n2) && std::min(far_b, far_c) >= min_affine &&
+           std::min(ratio, 1.0) * std::sqrt(n2 / longest2) >= min_height * rounding * largest;
 }
 
-template <class Corners> void turn(Corners &corners, int by) {
+// Makes corner `by` the first one.
+template <class Corners> void rotate_corners(Corners &corners, int by) {
     std::rotate(std::begin(corners), std::begin(corners) + by, std::end(corners));
 }
 
-// The face of two triangles that make one, turned to A B C and D C B; else of the first alone.
+// Returns the face of both triangles if they make a quadrilateral, and rotates their corners to A B C and D C B; else
+// the face of the first triangle alone.
 Face make_face(uint first, uint second, TriangleSoup &soup, std::vector<Triangle> &triangles) {
     const auto corner = [&](uint id, int i) { return soup.vertices[soup.corners[id][size_t(i % 3)]]; };
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             if (corner(first, i + 1) == corner(second, j + 2) && corner(first, i + 2) == corner(second, j + 1) &&
                 is_quadrilateral(corner(first, i), corner(first, i + 1), corner(first, i + 2), corner(second, j))) {
-                turn(soup.corners[first], i);
-                turn(triangles[first].normal, i);
-                turn(soup.corners[second], j);
-                turn(triangles[second].normal, j);
+                rotate_corners(soup.corners[first], i);
+                rotate_corners(triangles[first].normal, i);
+                rotate_corners(soup.corners[second], j);
+                rotate_corners(triangles[second].normal, j);
                 return {first, second};
             }
     return {first, OPAL_NONE};
 }
 
-// The plane of A B D C: of its two diagonals, through its middle. Where it is along the normal is asked of the normal
-// that was rounded.
-void set_plane(const Point (&corners)[4], FaceRecord &face) {
+// Sets the plane of the quadrilateral A B D C: its normal is that of the diagonals, and it goes through the corners'
+// mean. `along` is the mean's distance along the normal as rounded to float, so that the plane goes through it exactly.
+void set_plane(const Point3f (&corners)[4], FaceRecord &face) {
     const Vec3 n = cross(vec3(corners[3]) - vec3(corners[0]), vec3(corners[2]) - vec3(corners[1])),
                unit = n * (1 / length(n));
     face.normal[0] = float(unit.x), face.normal[1] = float(unit.y), face.normal[2] = float(unit.z);
     double along = 0;
-    for (const Point &p : corners)
+    for (const Point3f &p : corners)
         along += dot(vec3(p), {face.normal[0], face.normal[1], face.normal[2]}) / 4;
     face.along = float(along);
 }
 
-// Where points lie beside the plane of a b c.
+// On which sides of the plane of a b c points lie: the least and the greatest of their signed distances.
 class Sides {
 public:
-    Sides(const Point &a, const Point &b, const Point &c) : on_plane(vec3(a)) {
+    Sides(const Point3f &a, const Point3f &b, const Point3f &c) : on_plane_(vec3(a)) {
         const Vec3 n = normal_of(a, b, c);
-        normal = n * (1 / length(n));
+        normal_ = n * (1 / length(n));
     }
-    void add(const Point &p) {
-        const double distance = dot(vec3(p) - on_plane, normal);
-        lowest = std::min(lowest, distance);
-        highest = std::max(highest, distance);
+    void add(const Point3f &p) {
+        const double distance = dot(vec3(p) - on_plane_, normal_);
+        lowest_ = std::min(lowest_, distance);
+        highest_ = std::max(highest_, distance);
     }
-    bool all_on_one(double doubt) const { return lowest >= -doubt || highest <= doubt; }
-    bool all_in_plane(double doubt) const { return lowest >= -doubt && highest <= doubt; }
+    bool all_on_one_side(double tolerance) const { return lowest_ >= -tolerance || highest_ <= tolerance; }
+    bool all_in_plane(double tolerance) const { return lowest_ >= -tolerance && highest_ <= tolerance; }
 
 private:
-    Vec3 on_plane, normal;
-    double lowest = 0, highest = 0;
+    Vec3 on_plane_, normal_;
+    double lowest_ = 0, highest_ = 0;
 };
 
-double largest_coordinate(const Point &p) { return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}); }
+double largest_coordinate(const Point3f &p) { return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}); }
 
-// Does no ray from a point of the scene to one of `lights` cross the face? So where all of the scene is on one side of
-// its plane, and where all lights are in it.
-bool never_blocks(const Face &face, const TriangleSoup &soup, const std::vector<Point> &lights) {
+// Whether the face provably blocks no shadow ray, a ray from a point of the scene to one of `lights`: the whole scene
+// is on one side of its plane, or all lights are in its plane.
+bool never_blocks(const Face &face, const TriangleSoup &soup, const std::vector<Point3f> &lights) {
     const auto &[a, b, c] = soup.corners[face.first];
     Sides sides(soup.vertices[a], soup.vertices[b], soup.vertices[c]);
     double largest = 0;
-    for (const Point &p : lights) {
+    for (const Point3f &p : lights) {
         sides.add(p);
         largest = std::max(largest, largest_coordinate(p));
     }
-    if (!lights.empty() && sides.all_in_plane(ROUNDING * largest))
+    if (!lights.empty() && sides.all_in_plane(rounding * largest))
         return true;
-    for (size_t i = 0; i < soup.corners.size() && sides.all_on_one(ROUNDING); i++)
+    for (size_t i = 0; i < soup.corners.size() && sides.all_on_one_side(rounding); i++)
         for (uint vertex : soup.corners[i])
             sides.add(soup.vertices[vertex]);
-    return sides.all_on_one(ROUNDING);
+    return sides.all_on_one_side(rounding);
 }
 
 } // namespace
@@ -145,16 +149,16 @@ std::vector<uint> choose_face_list(const TriangleSoup &soup) {
     std::sort(candidates.begin(), candidates.end());
 
     std::vector<uint> chosen;
-    std::set<std::array<float, 3>> distinct;
+    std::set<Point3f> distinct;
     for (const auto &[minus_area, id] : candidates) {
         if (!tiny && chosen.size() >= FIRST_TRIANGLES && -minus_area < FACE_LIST_SHARE * scene.half_area())
             break;
-        std::set<std::array<float, 3>> with = distinct;
+        std::set<Point3f> extended = distinct;
         for (uint vertex : soup.corners[id])
-            with.insert(soup.vertices[vertex]);
-        if (chosen.size() == OPAL_FACE_LIST_TRIANGLES || with.size() > OPAL_FACE_LIST_VERTICES)
+            extended.insert(soup.vertices[vertex]);
+        if (chosen.size() == OPAL_FACE_LIST_TRIANGLES || extended.size() > OPAL_FACE_LIST_VERTICES)
             break;
-        distinct = std::move(with);
+        distinct = std::move(extended);
         chosen.push_back(id);
     }
     std::sort(chosen.begin(), chosen.end());
@@ -177,7 +181,7 @@ std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, std:
     return faces;
 }
 
-void plant_tree(const TriangleSoup &soup, const std::vector<Face> &faces, FlatScene &scene) {
+void build_tree(const TriangleSoup &soup, const std::vector<Face> &faces, FlatScene &scene) {
     std::vector<char> in_list(soup.corners.size());
     for (const Face &face : faces)
         for (uint id : {face.first, face.second})
@@ -187,25 +191,25 @@ void plant_tree(const TriangleSoup &soup, const std::vector<Face> &faces, FlatSc
     for (uint id = 0; id < soup.corners.size(); id++)
         if (!in_list[id])
             others.push_back(id);
-    Bvh bvh = faces.empty() ? build_bvh(soup) : build_bvh(only(soup, others));
+    Bvh bvh = faces.empty() ? build_bvh(soup) : build_bvh(subset_of(soup, others));
     if (!faces.empty())
-        rename(bvh.blocks, others);
+        map_ids(bvh.blocks, others);
     scene.sah_cost = sah_cost(bvh);
     scene.nodes = std::move(bvh.nodes);
     scene.blocks = std::move(bvh.blocks);
 }
 
-void list_faces(const TriangleSoup &soup, std::vector<Face> faces, const std::vector<std::array<float, 3>> &lights,
+void list_faces(const TriangleSoup &soup, std::vector<Face> faces, const std::vector<Point3f> &lights,
                 FlatScene &scene) {
     const auto idle = std::stable_partition(faces.begin(), faces.end(),
                                             [&](const Face &face) { return !never_blocks(face, soup, lights); });
     scene.settings.face_list_slot = uint(scene.blocks.size()) * 8;
-    std::map<Point, uint> vertices;
+    std::map<Point3f, uint> vertices;
     std::vector<uint> shapes, ids; // by slot: a triangle of its shape, and of its id
     for (const Face &face : faces) {
         const bool pair = face.second != OPAL_NONE;
         FaceRecord record{};
-        Point corners[4]; // A, B, C, and D or B again
+        Point3f corners[4]; // A, B, C, and D or B again
         for (size_t i = 0; i < 4; i++) {
             corners[i] = soup.vertices[i < 3  ? soup.corners[face.first][i]
                                        : pair ? soup.corners[face.second][0]
@@ -222,8 +226,8 @@ void list_faces(const TriangleSoup &soup, std::vector<Face> faces, const std::ve
             scene.settings.face_list_to_light = scene.settings.face_list;
     }
     if (!faces.empty()) {
-        std::vector<TriangleBlock> blocks = pack_blocks(only(soup, shapes));
-        rename(blocks, ids);
+        std::vector<TriangleBlock> blocks = pack_blocks(subset_of(soup, shapes));
+        map_ids(blocks, ids);
         scene.blocks.insert(scene.blocks.end(), blocks.begin(), blocks.end());
     }
     scene.face_vertices.resize(3 * vertices.size());

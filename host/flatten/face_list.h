@@ -21,17 +21,18 @@ struct Face {
     uint first, second;
 };
 
-// Finds the quadrilaterals among `ids`. Turns their triangles' corners, in `soup` and in `triangles`, so that they
-// begin at A and at D.
+// Pairs the triangles `ids` into quadrilaterals where possible. Rotates the corners of each pair, in `soup` and in
+// `triangles`, so that they begin at A and at D.
 std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, std::vector<Triangle> &triangles);
 
-// The tree over the triangles that are in none of `faces`.
-void plant_tree(const TriangleSoup &soup, const std::vector<Face> &faces, FlatScene &scene);
+// Builds the tree over the triangles that are in no face of `faces`: fills scene.nodes, scene.blocks and
+// scene.sah_cost.
+void build_tree(const TriangleSoup &soup, const std::vector<Face> &faces, FlatScene &scene);
 
-// Fills the blocks, the vertices and the records of the face list. Faces that no ray from a point of the scene
-// to one of `lights` (or between them) crosses come last: with all triangles and lights on one side, or with all lights
-// in their plane.
-void list_faces(const TriangleSoup &soup, std::vector<Face> faces, const std::vector<std::array<float, 3>> &lights,
+// Appends the blocks of the face list to scene.blocks and fills their tables. Faces that no ray from a point of the
+// scene to a point of `lights` or of their convex hull can cross come last: the whole scene is on one side of their
+// plane, or all lights are in it.
+void list_faces(const TriangleSoup &soup, std::vector<Face> faces, const std::vector<Point3f> &lights,
                 FlatScene &scene);
 
 } // namespace opal

@@ -16,8 +16,9 @@ std::string plural(std::size_t count, const char *one, const char *many) {
     return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
-// Bytes. Asking ahead costs 2 to 5 % of a ray's time in trees of 0.1 to 3 MiB, and saves 6 % at 110 MiB.
-constexpr std::size_t LARGE_TREE = 4 << 20;
+// A tree of more bytes is large: its nodes are prefetched. Prefetching costs 2 to 5 % of a ray's time in trees of 0.1
+// to 3 MiB and saves 6 % at 110 MiB.
+constexpr std::size_t large_tree_bytes = 4 << 20;
 
 class Decider {
 public:
@@ -26,8 +27,9 @@ public:
         const int integrator = description.strategy[AXIS_integrator];
         unlit = integrator == CHOICE_integrator_normals || integrator == CHOICE_integrator_ao ||
                 integrator == CHOICE_integrator_simple;
-        follows_only = (integrator == CHOICE_integrator_direct_lighting || integrator == CHOICE_integrator_path) &&
-                       description.strategy[AXIS_lighting] == CHOICE_lighting_bsdf;
+        bsdf_sampling_only =
+            (integrator == CHOICE_integrator_direct_lighting || integrator == CHOICE_integrator_path) &&
+            description.strategy[AXIS_lighting] == CHOICE_lighting_bsdf;
     }
 
 #define OPAL_DECIDE_BSDF(name)                                                                                         \
@@ -51,7 +53,7 @@ public:
     Decision emitter(uint kind) const {
         if (unlit)
             return {false, "this integrator asks no emitter"};
-        if (kind == EMITTER_point && follows_only)
+        if (kind == EMITTER_point && bsdf_sampling_only)
             return {false, "a BSDF sample never hits a point"};
         const auto has = [&](const EmitterRecord &emitter) { return emitter.kind == kind; };
         return counted(std::size_t(std::count_if(scene.emitters.begin(), scene.emitters.end(), has)),
@@ -88,7 +90,7 @@ public:
 
     Decision large_tree() const {
         const std::size_t bytes = scene.nodes.size() * sizeof(BvhNode) + scene.blocks.size() * sizeof(TriangleBlock);
-        return {tree().on && bytes > LARGE_TREE,
+        return {tree().on && bytes > large_tree_bytes,
                 fmt::format("{:.1f} MiB of nodes and triangles", double(bytes) / (1 << 20))};
     }
 
@@ -107,8 +109,8 @@ private:
     const SceneDescription &description;
     const FlatScene &scene;
     int lanes;
-    bool unlit;        // the integrator asks neither BSDFs nor emitters
-    bool follows_only; // light is found by BSDF samples alone
+    bool unlit;              // the integrator evaluates neither BSDFs nor emitters
+    bool bsdf_sampling_only; // no light sampling: emitters are found by BSDF samples alone
 
     static Decision counted(std::size_t count, std::size_t all, const char *one, const char *many) {
         if (count == 0)
@@ -119,7 +121,8 @@ private:
     }
 };
 
-// The axis `hemisphere`: where the materials agree, the kernel holds one way only.
+// Chooses the axis `hemisphere`: where all diffuse materials sample it the same way, the kernel has only that way. Sets
+// `reason` in that case.
 int find_hemisphere(const SceneDescription &description, const FlatScene &scene, std::string &reason) {
     const int chosen = description.strategy[AXIS_hemisphere];
     if (chosen != CHOICE_hemisphere_material)

@@ -1,4 +1,4 @@
-// Decides what a scene's kernel is compiled with.
+// The features of a scene: the decisions that its kernel is compiled with.
 #pragma once
 
 #include "flatten/flat_scene.h"
@@ -10,12 +10,12 @@ constexpr int FACE_LIST_LANES = 4; // from this width on testing each of a few t
 // A feature's name (FEATURE_*), as `opal inspect` prints it.
 const char *feature_name(unsigned feature);
 
-// Everything in `scene` but its features must be there. With strategy.specialise off, all features are on and all axes
-// -1.
+// Finds the features of a flat scene that is otherwise complete. Without strategy.specialise all features are on and
+// all axes are -1, decided at run time.
 Features find_features(const SceneDescription &description, const FlatScene &scene, int lanes);
 
-// Of one kernel that renders every scene given (variants of one scene): a feature that any needs is on, and an axis on
-// which they differ is decided at run time.
+// The features of one kernel that renders all of these variants of a scene: a feature that any variant needs is on, and
+// an axis on which variants differ is decided at run time.
 Features shared_features(const std::vector<FlatScene> &scenes);
 
 } // namespace opal

@@ -20,7 +20,8 @@ struct Feature {
     std::string reason; // "36 triangles: each against all lanes is faster"
 };
 
-// What decides the program text (DESIGN section 4): features as 0 or 1, axes as a CHOICE_* or -1 (decided at run time).
+// The decisions that a kernel is compiled with: each feature as 0 or 1, each strategy axis as a CHOICE_* or as -1,
+// decided at run time.
 struct Features {
     std::array<Feature, FEATURE_COUNT> list; // by FEATURE_*
     std::array<int, AXIS_COUNT> axes{};      // CHOICE_* or -1
@@ -29,8 +30,8 @@ struct Features {
 };
 
 struct FlatScene {
-    // Flattened position = (world position - center) * scale; scale is a power of two, so that nothing but the
-    // recentring rounds. Everything then lies within about [-1, 1], whatever the scene's units.
+    // Flattened position = (world position - center) * scale: positions lie within about [-1, 1], whatever the scene's
+    // units. See Flattening (flatten/geometry.h).
     Vec3 center;
     double scale = 1;
 
@@ -41,8 +42,8 @@ struct FlatScene {
     uint face_list_triangles = 0; // that `faces` stand for
     Features features;
 
-    double sah_cost = 0; // of the tree, in triangle block tests and node visits
-    double bvh_seconds = 0;
+    double sah_cost = 0;    // of the tree, in triangle block tests and node visits
+    double bvh_seconds = 0; // wall time of the build
 };
 
 // lanes: the width that the kernel will have; decides whether triangles are listed beside the tree.

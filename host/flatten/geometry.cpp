@@ -24,9 +24,9 @@ void add_extent(const TriangleMesh &shape, Extent &extent) {
             extent.add(shape.positions[corner.position]);
 }
 
-// Whether the device, in float, finds the direction of the normal: its squared length neither vanishes nor loses
-// digits.
-bool has_normal(const std::array<float, 3> &a, const std::array<float, 3> &b, const std::array<float, 3> &c) {
+// Whether a device computes the direction of the normal in float: the squared length must not be denormal, in float nor
+// in exact arithmetic.
+bool has_normal(const Point3f &a, const Point3f &b, const Point3f &c) {
     const Vec3 exact = normal_of(a, b, c);
     const float x = b[0] - a[0], y = b[1] - a[1], z = b[2] - a[2];
     const float u = c[0] - a[0], v = c[1] - a[1], w = c[2] - a[2];
@@ -35,20 +35,20 @@ bool has_normal(const std::array<float, 3> &a, const std::array<float, 3> &b, co
     return nx * nx + ny * ny + nz * nz >= least && dot(exact, exact) >= double(least);
 }
 
-class Gatherer {
+class TriangleGatherer {
 public:
-    Gatherer(const Frame &to_flat, FlatScene &goal) : frame(to_flat), scene(goal) {}
+    TriangleGatherer(const Flattening &flattening, FlatScene &scene) : flattening_(flattening), scene_(scene) {}
 
     void add(const TriangleMesh &mesh) {
-        const uint first_normal = uint(scene.normals.size() / 3);
-        base = uint(soup.vertices.size());
+        const uint first_normal = uint(scene_.normals.size() / 3);
+        base_ = uint(soup.vertices.size());
         for (Vec3 position : mesh.positions)
-            soup.vertices.push_back(frame(position));
+            soup.vertices.push_back(flattening_(position));
         for (Vec3 normal : mesh.normals)
             for (double component : {normal.x, normal.y, normal.z})
-                scene.normals.push_back(float(component));
+                scene_.normals.push_back(float(component));
         for (const auto &triangle : mesh.triangles) {
-            // Interpolation takes three normals: a triangle that lacks one is flat.
+            // Interpolation needs three normals: a triangle that lacks one is flat.
             const bool smooth =
                 triangle[0].normal != OPAL_NONE && triangle[1].normal != OPAL_NONE && triangle[2].normal != OPAL_NONE;
             std::array<uint, 3> normals{OPAL_NONE, OPAL_NONE, OPAL_NONE};
@@ -56,35 +56,35 @@ public:
                 normals[i] = first_normal + triangle[i].normal;
             add_triangle({triangle[0].position, triangle[1].position, triangle[2].position}, normals);
         }
-        mesh_index++;
+        mesh_index_++;
     }
 
     void add(const Parallelogram &shape) {
-        base = uint(soup.vertices.size());
+        base_ = uint(soup.vertices.size());
         for (Vec3 corner : corners_of(shape))
-            soup.vertices.push_back(frame(corner));
+            soup.vertices.push_back(flattening_(corner));
         add_triangle({0, 1, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE});
         add_triangle({1, 3, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE});
-        mesh_index++;
+        mesh_index_++;
     }
 
     TriangleSoup soup;
     std::size_t dropped = 0;
 
 private:
-    const Frame &frame;
-    FlatScene &scene;
-    uint base = 0, mesh_index = 0;
+    const Flattening &flattening_;
+    FlatScene &scene_;
+    uint base_ = 0, mesh_index_ = 0; // of the current mesh: its first vertex in the soup, and its index
 
     void add_triangle(std::array<uint, 3> corners, std::array<uint, 3> normals) {
         for (uint &corner : corners)
-            corner += base;
+            corner += base_;
         if (!has_normal(soup.vertices[corners[0]], soup.vertices[corners[1]], soup.vertices[corners[2]])) {
             dropped++;
             return;
         }
         soup.corners.push_back(corners);
-        scene.triangles.push_back({{normals[0], normals[1], normals[2]}, mesh_index});
+        scene_.triangles.push_back({{normals[0], normals[1], normals[2]}, mesh_index_});
     }
 };
 
@@ -118,12 +118,12 @@ Extent extent_of(const SceneDescription &scene) {
     return extent;
 }
 
-std::array<float, 3> Frame::operator()(Vec3 world) const {
+Point3f Flattening::operator()(Vec3 world) const {
     const Vec3 p = (world - center) * scale;
     return {float(p.x), float(p.y), float(p.z)};
 }
 
-Frame find_frame(const SceneDescription &scene) {
+Flattening find_flattening(const SceneDescription &scene) {
     const Extent extent = extent_of(scene);
     if (extent.empty())
         return {};
@@ -135,8 +135,8 @@ Frame find_frame(const SceneDescription &scene) {
     return {center, std::ldexp(1.0, m == 0.5 ? 1 - exponent : -exponent)};
 }
 
-TriangleSoup gather_triangles(const SceneDescription &description, const Frame &frame, FlatScene &scene) {
-    Gatherer gatherer(frame, scene);
+TriangleSoup gather_triangles(const SceneDescription &description, const Flattening &flattening, FlatScene &scene) {
+    TriangleGatherer gatherer(flattening, scene);
     std::size_t vertices = 0, triangles = 0;
     for (const Mesh &mesh : description.meshes) {
         const auto *mesh_shape = std::get_if<TriangleMesh>(&mesh.shape);

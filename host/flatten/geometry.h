@@ -1,4 +1,4 @@
-// From meshes in world space and double precision to triangles of floats around the origin.
+// Flattening of positions: from meshes in world space and double precision to triangles of floats around the origin.
 #pragma once
 
 #include "bvh/box.h"
@@ -7,31 +7,32 @@
 
 namespace opal {
 
-// A box in world space, around nothing at first.
+// An axis-aligned box in world space, empty at first.
 struct Extent {
     Vec3 lo{INFINITY, INFINITY, INFINITY}, hi{-INFINITY, -INFINITY, -INFINITY};
     void add(Vec3 p);
     void add(const Extent &other);
     bool empty() const { return lo.x > hi.x; }
     Vec3 middle() const { return lo * 0.5 + hi * 0.5; }
-    double longest_side() const; // 0 where empty
+    double longest_side() const; // 0 if empty
 };
-Extent extent_of(const Mesh &mesh);              // a position that no triangle uses does not count
-Extent extent_of(const SceneDescription &scene); // all meshes and point lights
+Extent extent_of(const Mesh &mesh);              // of the positions that triangles use
+Extent extent_of(const SceneDescription &scene); // of all meshes and point lights, without the camera
 
-// The map from world positions to flattened ones; distances grow by `scale`, areas by its square.
-struct Frame {
+// The map from world space to flattened units, (position - center) * scale. Distances grow by the factor `scale`, areas
+// by its square; directions stay. The scale is a power of two, so that nothing but the subtraction rounds in double.
+struct Flattening {
     Vec3 center;
     double scale = 1;
-    std::array<float, 3> operator()(Vec3 world) const;
+    Point3f operator()(Vec3 world) const; // rounds to float
 };
 
-// Centre of the scene's extent, and the power of two that brings half its longest side into
-// (0.5, 1]. A scene of nothing, or of one point, has scale 1.
-Frame find_frame(const SceneDescription &scene);
+// Maps the centre of the scene's extent to the origin and half of its longest side into (0.5, 1]. An empty scene and a
+// scene of one point have scale 1.
+Flattening find_flattening(const SceneDescription &scene);
 
-// Fills scene.triangles and scene.normals, and returns the positions. Triangles that the rounding to float leaves
-// without a normal are left out, with a warning that counts them.
-TriangleSoup gather_triangles(const SceneDescription &description, const Frame &frame, FlatScene &scene);
+// Fills scene.triangles and scene.normals and returns the flattened positions. A triangle whose normal is lost in the
+// rounding to float is dropped; one warning counts all of them.
+TriangleSoup gather_triangles(const SceneDescription &description, const Flattening &flattening, FlatScene &scene);
 
 } // namespace opal

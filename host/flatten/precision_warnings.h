@@ -1,11 +1,11 @@
-// What in a scene goes where single precision does not hold, or where light is made from nothing.
+// Warnings about a scene: values beyond the tested range of single precision, and materials that create energy.
 #pragma once
 
 #include "flatten/flat_scene.h"
 
 namespace opal {
 
-// A line each, "file:line:col: what, and what follows". The limits are those that `opal extremes` found.
-std::vector<std::string> sanity_warnings(const SceneDescription &scene, const FlatScene &flat);
+// One line "file:line:col: what, and what follows" for each warning. The limits are those that `opal extremes` found.
+std::vector<std::string> precision_warnings(const SceneDescription &scene, const FlatScene &flat);
 
 } // namespace opal

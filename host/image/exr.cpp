@@ -21,12 +21,12 @@ namespace opal {
 
 namespace {
 
-// A file that was read: OpenEXR parses it here, so that read_file sees every error of the disk.
+// A file in memory, for reading: read_file has seen every error of the disk.
 class MemoryInput : public Imf::IStream {
 public:
     MemoryInput(const std::filesystem::path &file, std::string bytes)
         : IStream(file.c_str()), bytes_(std::move(bytes)) {}
-    bool read(char bytes[], int count) override { // false: that was the file's last byte
+    bool read(char bytes[], int count) override { // false at the end of the file
         if (place_ > bytes_.size() || static_cast<size_t>(count) > bytes_.size() - place_)
             throw std::runtime_error("the file ends too early");
         std::copy_n(bytes_.begin() + static_cast<std::ptrdiff_t>(place_), count, bytes);
@@ -41,7 +41,7 @@ private:
     size_t place_ = 0;
 };
 
-// A file in memory: OpenEXR writes here, so that write_safely sees every error of the disk.
+// A file in memory, for writing: write_safely then sees every error of the disk.
 class MemoryOutput : public Imf::OStream {
 public:
     MemoryOutput() : OStream("memory") {}
@@ -61,7 +61,7 @@ private:
     size_t place_ = 0;
 };
 
-// The slice by which OpenEXR reaches a layer's pixels. It never writes to them when it writes a file.
+// OpenEXR's view of a layer's pixels. Its pointer is not const, but writing a file does not change them.
 Imf::Slice slice_of(const float *values, int width, const Imath::Box2i &window) {
     char *first = reinterpret_cast<char *>(const_cast<float *>(values));
     const std::ptrdiff_t before = window.min.x + std::ptrdiff_t(window.min.y) * width;
@@ -85,7 +85,7 @@ std::string exr_bytes(const Image &image) {
         Imf::OutputFile file(stream, header);
         file.setFrameBuffer(frame);
         file.writePixels(image.height);
-    } // the table of lines is written when the file ends
+    } // the destructor writes the table of line offsets
     return stream.bytes();
 }
 

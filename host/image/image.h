@@ -1,4 +1,4 @@
-// An image of named float layers, and the files it is kept in.
+// Images of named float layers, and their files.
 #pragma once
 
 #include <filesystem>
@@ -19,22 +19,23 @@ struct Image {
     std::map<std::string, std::string> metadata; // string attributes of the EXR header
 
     const Layer *find(const std::string &name) const;  // nullptr where there is none
-    const Layer &get(const std::string &name) const;   // Error naming the layers there are
-    double number(const std::string &attribute) const; // of the metadata; 0 where it is missing or no number
+    const Layer &get(const std::string &name) const;   // Error that lists the layers
+    double number(const std::string &attribute) const; // from the metadata; 0 if it is missing or no number
 };
 
-Image read_exr(const std::filesystem::path &file);                     // every float or half channel
-void write_exr(const Image &image, const std::filesystem::path &file); // float32, beside and then renamed
-// R, G, B with the exact sRGB curve (IEC 61966-2-1), clamped and rounded to 8 bits; what is not finite becomes magenta.
+Image read_exr(const std::filesystem::path &file);                     // reads every float and half channel
+void write_exr(const Image &image, const std::filesystem::path &file); // float32; by write_safely
+// Writes R, G, B with the exact sRGB curve (IEC 61966-2-1), clamped and rounded to 8 bits. Pixels that are not finite
+// become magenta.
 void write_png(const Image &image, const std::filesystem::path &file);
-double srgb_encode(double linear); // linear 0 to 1 -> display value 0 to 1, clamped
+double srgb_encode(double linear); // of a linear value, clamped to 0 to 1
 
-// Throws Error unless write_safely could put a file there: asked before rendering, not after.
+// Error unless write_safely could write this file. Call it before rendering, not after.
 void check_writable(const std::filesystem::path &file);
 
-// Writes by way of a temporary file beside `file`, renamed when `write` has returned: nothing is ever half-written.
-// Throws Error with the reason of the system ("No space left on device") and removes the temporary file.
-// A link's target is written, not the link; what is no regular file (/dev/stdout) is written as it is.
+// Writes a temporary file beside `file` and renames it when it is whole: no file is ever half-written. Error with the
+// reason of the system ("No space left on device"); the temporary file is then removed. A symbolic link's target is
+// replaced, not the link. A file that is not regular (/dev/stdout) is written in place.
 void write_safely(const std::filesystem::path &file, const std::string &bytes);
 
 } // namespace opal

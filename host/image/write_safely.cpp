@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Where the bytes end up, links followed.
+// The file itself, with symbolic links followed.
 fs::path target_of(const fs::path &file) {
     std::error_code ignored;
     const fs::path target = fs::is_symlink(file, ignored) ? fs::weakly_canonical(file, ignored) : file;
@@ -36,7 +36,7 @@ fs::path temporary_beside(const fs::path &file) {
     throw Error(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(error)));
 }
 
-// 0, or the errno of what failed. A full disk may show only at fsync or close.
+// Returns errno, or 0. Some file systems report a full disk only at fsync or close.
 int write_all(int descriptor, const std::string &bytes) {
     for (size_t done = 0; done < bytes.size();) {
         const ssize_t count = write(descriptor, bytes.data() + done, bytes.size() - done);

@@ -18,18 +18,18 @@ namespace {
 constexpr unsigned none = OPAL_NONE;
 
 struct Face {
-    size_t first, count; // its corners
+    size_t first, count; // range of its corners
     const char *statement;
 };
 
-// The file as it was written, but for indices: they count from 0, and `none` stands for a missing one.
+// The contents of the file. Indices count from 0; `none`: not given.
 struct ObjFile {
     std::string name;
     std::string_view text;
-    const char *reading = nullptr; // the word that errors are about
+    const char *reading = nullptr; // the word at which an error happened
     std::vector<Vec3> positions, normals;
     size_t texture_count = 0;
-    unsigned largest_texture = 0; // index that a face names, and that corner
+    unsigned largest_texture = 0; // the largest texture index of a face, and its corner
     const char *largest_texture_corner = nullptr;
     std::vector<TriangleMesh::Corner> corners;
     std::vector<Face> faces;
@@ -40,7 +40,7 @@ struct ObjFile {
     }
 };
 
-// Cuts a text into statements: a line, or several joined by backslashes at their ends. Comments are left out.
+// Statements of the text: lines without comments, joined where they end with a backslash.
 class Statements {
 public:
     explicit Statements(std::string_view text) : text_(text) {}
@@ -64,7 +64,7 @@ private:
         bool continued = last != std::string_view::npos && row[last] == '\\' && position_ < text_.size();
         if (continued)
             row = row.substr(0, last);
-        // Not by find_first_of, which calls memchr for every character.
+        // find_first_of would call memchr for every character.
         const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
         for (auto start = std::find_if_not(row.begin(), row.end(), blank); start != row.end();) {
             const auto stop = std::find_if(start, row.end(), blank);
@@ -80,7 +80,7 @@ private:
 
 using Words = std::vector<std::string_view>;
 
-// Further numbers, such as vertex colours, mean nothing here.
+// Further numbers on the line, such as vertex colours, are ignored.
 Vec3 read_triple(ObjFile &obj, const Words &words) {
     if (words.size() < 4)
         throw Error("'" + std::string(words[0]) + "' needs three numbers");
@@ -92,7 +92,8 @@ Vec3 read_triple(ObjFile &obj, const Words &words) {
     return {numbers[0], numbers[1], numbers[2]};
 }
 
-// From 1, or from the end so far where negative; whether it is too large is known at the end of the file.
+// An index: counted from 1 or, where negative, backwards from the last element so far. Whether it is too large is known
+// only at the end of the file.
 unsigned read_index(std::string_view word, size_t count_so_far, const char *what) {
     int index = parse_integer(word);
     if (index == 0 || (index < 0 && size_t(-static_cast<long long>(index)) > count_so_far))
@@ -153,7 +154,7 @@ void read_statements(ObjFile &obj) {
         }
 }
 
-// The word of a face's corner, found again.
+// Finds the word of a face's corner again, for an error message.
 const char *corner_word(const ObjFile &obj, const Face &face, size_t corner) {
     Words words;
     Statements(obj.text.substr(size_t(face.statement - obj.text.data()))).next(words);
@@ -178,7 +179,7 @@ void check_indices(const ObjFile &obj) {
         obj.fail(obj.largest_texture_corner, too_large("texture", obj.largest_texture, obj.texture_count));
 }
 
-// Normals of no length become `none` in the corners, as if they were missing.
+// Replaces normals of length 0 by `none` in the corners.
 void to_world_space(ObjFile &obj, const Transform &to_world) {
     for (Vec3 &p : obj.positions) {
         p = to_world.point(p);
@@ -196,7 +197,7 @@ void to_world_space(ObjFile &obj, const Transform &to_world) {
             corner.normal = none;
 }
 
-// The height over the longest edge is below what rounding a coordinate to double may make of nothing.
+// A triangle has no area if its height over the longest edge may be due to rounding the coordinates to double.
 bool has_area(const ObjFile &obj, const std::array<TriangleMesh::Corner, 3> &triangle) {
     Vec3 p[3];
     double largest = 0, longest2 = 0;
@@ -209,7 +210,7 @@ bool has_area(const ObjFile &obj, const std::array<TriangleMesh::Corner, 3> &tri
     const Vec3 doubled_area = cross(p[1] - p[0], p[2] - p[0]);
     const double rounding = 4 * std::numeric_limits<double>::epsilon() * largest;
     return dot(doubled_area, doubled_area) >
-           rounding * rounding * longest2; // squares of float's range stay within double's
+           rounding * rounding * longest2; // no overflow: squares of floats fit into doubles
 }
 
 std::vector<std::array<TriangleMesh::Corner, 3>> make_triangles(ObjFile &obj) {
@@ -232,7 +233,7 @@ std::vector<std::array<TriangleMesh::Corner, 3>> make_triangles(ObjFile &obj) {
     return triangles;
 }
 
-// Keeps the entries that a corner's `member` names, renumbered in the order of their first use.
+// Keeps the entries that corners refer to by `member`, renumbered in the order of their first use.
 std::vector<Vec3> compact(const std::vector<Vec3> &all, std::vector<std::array<TriangleMesh::Corner, 3>> &triangles,
                           unsigned TriangleMesh::Corner::*member) {
     std::vector<Vec3> used;

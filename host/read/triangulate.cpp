@@ -21,7 +21,7 @@ Vec3 area_vector(const std::vector<Vec3> &corners) {
     return sum;
 }
 
-// Drops the axis along which the polygon is flattest, keeping it counter-clockwise.
+// Projects along the axis in which the polygon is flattest, and keeps it counter-clockwise.
 std::vector<Point2> projected(const std::vector<Vec3> &corners) {
     Vec3 n = area_vector(corners);
     double x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
@@ -37,14 +37,14 @@ std::vector<Point2> projected(const std::vector<Vec3> &corners) {
 
 bool same(Point2 a, Point2 b) { return a.x == b.x && a.y == b.y; }
 
-// The polygon that is left, as indices into all points.
+// The part of the polygon that is not cut off yet, as indices of its points.
 struct Clipper {
     const std::vector<Point2> &points;
     std::vector<unsigned> left;
 
     unsigned at(size_t i) const { return left[i % left.size()]; }
 
-    // The corner after `i` is an ear: it turns left, and no other corner lies in its triangle.
+    // Whether the corner after `i` is an ear: convex, with no other corner in its triangle.
     bool is_ear(size_t i) const {
         Point2 a = points[at(i)], b = points[at(i + 1)], c = points[at(i + 2)];
         if (!(turn(a, b, c) > 0))
@@ -58,7 +58,7 @@ struct Clipper {
         return true;
     }
 
-    // Where nothing is an ear (corners in a line, an outline that crosses itself), any corner must do.
+    // Without an ear (collinear corners, an outline that crosses itself) any corner is cut off.
     size_t find_ear() const {
         for (size_t i = 0; i < left.size(); ++i)
             if (is_ear(i))

@@ -19,7 +19,7 @@ namespace {
 
 bool is_text(pugi::xml_node node) { return node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata; }
 
-// The elements below a node; text is an Error at its first character that is not blank.
+// The child elements of a node. Text that is not blank is an Error.
 std::vector<XmlNode> elements_of(const XmlDocument &document, pugi::xml_node parent) {
     std::vector<XmlNode> elements;
     for (pugi::xml_node child : parent.children()) {
@@ -71,7 +71,7 @@ XmlDocument::XmlDocument(const std::filesystem::path &file, std::string text)
     : file_(file.string()), text_(std::move(text)) {
     if (text_.starts_with("\xef\xbb\xbf"))
         text_.erase(0, 3); // a byte order mark would shift every offset
-    // As a fragment, so that text and second roots beside the root are seen instead of skipped.
+    // Parsed as a fragment: pugixml would skip text and further roots beside the root.
     pugi::xml_parse_result result = document_.load_buffer(
         text_.data(), text_.size(), pugi::parse_default | pugi::parse_fragment, pugi::encoding_utf8);
     if (result.status == pugi::status_out_of_memory)

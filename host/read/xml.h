@@ -1,4 +1,4 @@
-// XML nodes that remember where they were written, so that every error can say file:line:col.
+// XML elements that know their place in the file, so that every error can say file:line:col.
 #pragma once
 
 #include "scene/scene.h"
@@ -24,11 +24,11 @@ public:
     XmlNode(const XmlDocument &document, pugi::xml_node node) : document_(&document), node_(node) {}
 
     std::string tag() const { return node_.name(); }
-    SourcePlace place() const; // of its '<'
+    SourcePlace place() const; // of the '<'
     std::string attribute(const char *name) const { return node_.attribute(name).value(); }
-    // The child elements in document order; text between them is an Error.
+    // The child elements, in document order. Text between them is an Error.
     std::vector<XmlNode> children() const;
-    // Exactly these attributes, each once; anything else is an Error.
+    // Throws Error unless the element has exactly these attributes, each once.
     void require_attributes(std::initializer_list<const char *> names) const;
     [[noreturn]] void fail(const std::string &message) const; // Error "file:line:col: message"
 
@@ -39,9 +39,9 @@ private:
 
 class XmlDocument {
 public:
-    // Reads and parses a file; throws Error with the place of what is malformed.
+    // Reads and parses a file. Throws Error at the place of the first mistake.
     explicit XmlDocument(const std::filesystem::path &file);
-    // Parses text that is said to be in `file`.
+    // Parses `text`; errors name `file`.
     XmlDocument(const std::filesystem::path &file, std::string text);
     XmlDocument(const XmlDocument &) = delete;
     XmlDocument &operator=(const XmlDocument &) = delete;

@@ -13,13 +13,24 @@ namespace opal {
 
 namespace {
 
-constexpr unsigned long long slot_bytes = 4 * OPAL_SAMPLE_FLOATS, slots_budget = 256ull << 20;
-constexpr unsigned most_chunks = 4096;
+// The buffer of a pass's samples. Kernels index its floats by 32 bits.
+constexpr unsigned long long sample_bytes = 4 * OPAL_SAMPLE_FLOATS;
+constexpr unsigned long long max_sample_buffer_bytes = 256ull << 20,
+                             max_buffer_samples = (1ull << 32) / OPAL_SAMPLE_FLOATS;
+
+// A work-item renders one chunk of the samples of one tile. Tiles are cut into chunks for about so many work-items a
+// pass that all cores stay busy to its end.
+constexpr unsigned max_chunks = 4096, max_samples_a_chunk = 64;
+// CPU: tiles of 8 x 8 pixels keep 16 lanes full for most of the time.
+constexpr unsigned cpu_tile_side = 8, cpu_items_a_core = 64, max_cpu_items_a_launch = 512;
+// GPU: one pixel for each work-item, and enough of them to hide the latency of its memory.
+constexpr unsigned gpu_tile_side = 1, gpu_items = 1u << 17, max_gpu_items_a_launch = 1u << 20;
 
 unsigned ceil_div(unsigned a, unsigned b) { return (a + b - 1) / b; }
 
-// 0 .. count - 1 by the fractional parts of their multiples of the golden ratio. Launches are strips of the image from
-// its top on; taken in this order, those that are done lie evenly over it, whenever a pass is stopped.
+// The numbers 0 .. count - 1, sorted by the fractional parts of their multiples of the golden ratio. Launches are
+// strips of the image from its top down; in this order the finished ones lie evenly over the image whenever a pass is
+// stopped.
 std::vector<unsigned> spread_order(unsigned count) {
     const auto place = [](unsigned i) { return std::fmod(i * std::numbers::phi, 1.0); };
     std::vector<unsigned> order(count);
@@ -30,35 +41,34 @@ std::vector<unsigned> spread_order(unsigned count) {
 
 } // namespace
 
-// CPU: tiles of 8 x 8 pixels, which keep 16 lanes full for long, and enough work-items for all cores even for one
-// pixel. GPU: a pixel a work-item, as many as it has room for.
-Renderer::Shape Renderer::shape_of_launches() const {
+Renderer::LaunchShape Renderer::launch_shape() const {
     const bool gpu = device_.info.type == "gpu";
-    Shape s{};
-    s.tile_width = s.tile_height = gpu ? 1 : 8;
+    LaunchShape s{};
+    s.tile_width = s.tile_height = gpu ? gpu_tile_side : cpu_tile_side;
     s.local_size = unsigned(group_size(device_.info));
     s.tiles = ceil_div(settings_.width, s.tile_width) * ceil_div(settings_.height, s.tile_height);
-    const unsigned wanted = gpu ? 1u << 17 : 64 * std::max(1u, device_.info.compute_units);
-    s.chunks = std::clamp(wanted / s.tiles, 1u, most_chunks);
-    const unsigned most = gpu ? 1u << 20 : 512;
-    s.items_a_launch = ceil_div(std::min(most, s.tiles * s.chunks), s.local_size) * s.local_size;
+    const unsigned wanted_items = gpu ? gpu_items : cpu_items_a_core * std::max(1u, device_.info.compute_units);
+    s.chunks = std::clamp(wanted_items / s.tiles, 1u, max_chunks);
+    const unsigned max_items = gpu ? max_gpu_items_a_launch : max_cpu_items_a_launch;
+    s.items_a_launch = ceil_div(std::min(max_items, s.tiles * s.chunks), s.local_size) * s.local_size;
     return s;
 }
 
 Renderer::Renderer(const Device &device, const FlatScene &scene, const RenderOptions &options)
     : device_(device), settings_(scene.settings), options_(options),
       pixels_(size_t(scene.settings.width) * scene.settings.height), wide_filter_(scene.features[FEATURE_wide_filter]) {
-    shape_ = shape_of_launches();
-    // Slot numbers have 32 bits, three floats a slot; there is room for at least one sample of each pixel.
-    const unsigned long long most = std::min({slots_budget, device.info.max_allocation, slot_bytes * 0x55555555ull});
-    slot_samples_ = unsigned(std::clamp<unsigned long long>(most / slot_bytes / pixels_, 1, 64ull * most_chunks));
-    check_room(device, pixels_ * (slot_bytes * slot_samples_ + 4ull * FILM_PLANES + 4), "the film and its samples");
+    shape_ = launch_shape();
+    const unsigned long long bytes =
+        std::min({max_sample_buffer_bytes, device.info.max_allocation, sample_bytes * max_buffer_samples});
+    buffer_spp_ =
+        unsigned(std::clamp<unsigned long long>(bytes / sample_bytes / pixels_, 1, max_samples_a_chunk * max_chunks));
+    check_room(device, pixels_ * (sample_bytes * buffer_spp_ + 4ull * FILM_PLANES + 4), "the film and its samples");
 
     const cl::Program program = build_program(device, program_text(scene.features, options.build, *options.sources),
                                               options.build, &compile_seconds_);
     scene_ = upload_scene(device, scene);
-    slots_ =
-        make_buffer(device, CL_MEM_READ_WRITE, pixels_ * slot_bytes * slot_samples_, nullptr, "the samples of a pass");
+    samples_ =
+        make_buffer(device, CL_MEM_READ_WRITE, pixels_ * sample_bytes * buffer_spp_, nullptr, "the samples of a pass");
     film_ = make_zeros<float>(device, pixels_ * FILM_PLANES, "the film");
     counts_ = make_zeros<cl_uint>(device, pixels_, "the film's sample counts");
     invalid_ = make_zeros<cl_uint>(device, 1 + 2 * OPAL_INVALID_RECORDS, "the list of invalid samples");
@@ -67,21 +77,22 @@ Renderer::Renderer(const Device &device, const FlatScene &scene, const RenderOpt
         render_kernel_ = cl::Kernel(program, "render");
         gather_kernel_ = cl::Kernel(program, "gather");
         clear_kernel_ = cl::Kernel(program, "clear");
-        cl_uint place = 0;
+        cl_uint argument = 0;
         for (const cl::Buffer &buffer : scene_)
-            render_kernel_.setArg(place++, buffer);
-        render_kernel_.setArg(place, slots_);
+            render_kernel_.setArg(argument++, buffer);
+        render_kernel_.setArg(argument, samples_);
         clear_kernel_.setArg(0, scene_[0]);
-        clear_kernel_.setArg(1, slots_);
-        place = 0;
-        for (const cl::Buffer &buffer : {scene_[0], slots_, film_, counts_, invalid_})
-            gather_kernel_.setArg(place++, buffer);
+        clear_kernel_.setArg(1, samples_);
+        argument = 0;
+        for (const cl::Buffer &buffer : {scene_[0], samples_, film_, counts_, invalid_})
+            gather_kernel_.setArg(argument++, buffer);
         return 0;
     });
     compile_seconds_ += warm_up();
 }
 
-// Drivers finish compiling at the first launch of a kernel's shape: launches in which every work-item is past the end.
+// Launches the render kernel without any sample to render, because drivers finish compiling at a kernel's first launch
+// of a shape. Returns the seconds, which count as compile time.
 double Renderer::warm_up() {
     const auto start = std::chrono::steady_clock::now();
     with_device(device_.info, [&] {
@@ -95,7 +106,7 @@ double Renderer::warm_up() {
 
 void Renderer::restart(unsigned seed, unsigned first_sample) {
     settings_.seed = seed;
-    next_ = first_sample;
+    next_sample_ = first_sample;
     kernel_seconds_ = 0;
     with_device(device_.info, [&] {
         device_.queue.enqueueWriteBuffer(scene_[0], CL_TRUE, 0, sizeof settings_, &settings_);
@@ -106,7 +117,7 @@ void Renderer::restart(unsigned seed, unsigned first_sample) {
     });
 }
 
-// Runs a launch to its end and returns its seconds on the device. Work-items past `items` find nothing to do.
+// Launches `items` work-items, rounded up to whole work-groups, waits for them and returns the kernel's seconds.
 double Renderer::launch(const cl::Kernel &kernel, unsigned items) {
     cl::Event event;
     const unsigned padded = ceil_div(items, shape_.local_size) * shape_.local_size;
@@ -119,7 +130,8 @@ double Renderer::launch(const cl::Kernel &kernel, unsigned items) {
     return seconds;
 }
 
-// So many that a launch takes about launch_seconds, by the last pass; the first pass is a pilot of one a chunk.
+// The samples of each pixel in the next pass: as many as let a launch take about launch_seconds, by the last pass. The
+// first pass is a pilot with one sample a chunk.
 unsigned Renderer::next_pass_samples(unsigned left) const {
     unsigned samples = shape_.chunks;
     if (seconds_a_sample_ > 0) {
@@ -129,47 +141,48 @@ unsigned Renderer::next_pass_samples(unsigned left) const {
     }
     if (options_.max_pass_samples)
         samples = options_.max_pass_samples;
-    return std::min(std::clamp(samples, 1u, slot_samples_), left);
+    return std::min(std::clamp(samples, 1u, buffer_spp_), left);
 }
 
-void Renderer::set_pass_arguments(cl::Kernel &kernel, cl_uint place, unsigned chunk_samples, unsigned pass_samples) {
+void Renderer::set_pass_arguments(cl::Kernel &kernel, cl_uint first_argument, unsigned chunk_samples,
+                                  unsigned pass_samples) {
     for (unsigned value : {shape_.tiles * shape_.chunks, shape_.tile_width, shape_.tile_height, shape_.chunks,
-                           chunk_samples, next_, pass_samples})
-        kernel.setArg(place++, cl_uint(value));
+                           chunk_samples, next_sample_, pass_samples})
+        kernel.setArg(first_argument++, cl_uint(value));
 }
 
-bool Renderer::render_pass(unsigned samples, const Continue &go_on) {
+bool Renderer::render_pass(unsigned samples, const OnLaunch &on_launch) {
     const unsigned chunk_samples = ceil_div(samples, shape_.chunks), items = shape_.tiles * shape_.chunks;
-    const cl_uint first_place = cl_uint(scene_.size()) + 1;
-    set_pass_arguments(render_kernel_, first_place + 1, chunk_samples, samples);
+    const cl_uint first_item_argument = cl_uint(scene_.size()) + 1; // after the tables and the samples
+    set_pass_arguments(render_kernel_, first_item_argument + 1, chunk_samples, samples);
     set_pass_arguments(clear_kernel_, 3, chunk_samples, samples);
     double seconds = 0;
     bool stopped = false;
     unsigned done = 0;
-    for (const unsigned place : spread_order(ceil_div(items, shape_.items_a_launch))) {
-        const unsigned first = place * shape_.items_a_launch;
-        if (stopped) { // the slots that nothing is rendered into
+    for (const unsigned index : spread_order(ceil_div(items, shape_.items_a_launch))) {
+        const unsigned first = index * shape_.items_a_launch;
+        if (stopped) { // marks the samples of this launch as missing
             clear_kernel_.setArg(2, cl_uint(first));
             launch(clear_kernel_, shape_.items_a_launch);
             continue;
         }
-        render_kernel_.setArg(first_place, cl_uint(first));
+        render_kernel_.setArg(first_item_argument, cl_uint(first));
         seconds += launch(render_kernel_, shape_.items_a_launch);
         done += std::min(shape_.items_a_launch, items - first);
-        stopped = go_on && !go_on(next_ + samples * double(done) / items, kernel_seconds_);
+        stopped = on_launch && !on_launch(next_sample_ + samples * double(done) / items, kernel_seconds_);
     }
-    gather_kernel_.setArg(5, cl_uint(next_));
+    gather_kernel_.setArg(5, cl_uint(next_sample_));
     gather_kernel_.setArg(6, cl_uint(samples));
     launch(gather_kernel_, ceil_div(unsigned(pixels_), unsigned(options_.build.lanes)));
     seconds_a_sample_ = seconds / samples;
-    next_ += samples;
+    next_sample_ += samples;
     return !stopped;
 }
 
-bool Renderer::render(unsigned end, const Continue &go_on) {
+bool Renderer::render(unsigned end, const OnLaunch &on_launch) {
     return with_device(device_.info, [&] {
-        while (next_ < end)
-            if (!render_pass(next_pass_samples(end - next_), go_on))
+        while (next_sample_ < end)
+            if (!render_pass(next_pass_samples(end - next_sample_), on_launch))
                 return false;
         return true;
     });
@@ -181,7 +194,7 @@ Film Renderer::film() const {
     film.height = int(settings_.height);
     film.count = read_buffer<cl_uint>(device_, counts_, pixels_);
     const std::vector<float> planes = read_buffer<float>(device_, film_, pixels_ * FILM_PLANES);
-    const auto value = [&](unsigned plane, unsigned low, size_t pixel) {
+    const auto value = [&](unsigned plane, unsigned low, size_t pixel) { // hi + lo
         return double(planes[plane * pixels_ + pixel]) + double(planes[low * pixels_ + pixel]);
     };
     film.sum.resize(pixels_);

@@ -1,5 +1,5 @@
-// Renders a flat scene on a device: passes of samples into the film, cut into launches that are short enough to be
-// interrupted. What is rendered depends on pixel, sample index and seed alone, not on the cuts.
+// The renderer: adds passes of samples to a film on the device. Each pass is cut into launches that are short enough to
+// be interrupted. A sample depends on its pixel, index and seed alone, not on passes and launches.
 #pragma once
 
 #include "device/program.h"
@@ -13,56 +13,61 @@ namespace opal {
 struct RenderOptions {
     BuildOptions build;
     const Sources *sources = &Sources::embedded();
-    double launch_seconds = 0.1;   // aimed at; a screen's watchdog may kill what takes longer than about 2 s
-    unsigned max_pass_samples = 0; // 0: what memory and launch_seconds allow; tests cut passes with it
+    double launch_seconds = 0.1;   // aim for a launch; a screen's watchdog may kill one of more than about 2 s
+    unsigned max_pass_samples = 0; // of a pixel; 0: as many as memory and launch_seconds allow
 };
 
 class Renderer {
 public:
-    // Compiles the program and uploads the scene. Error: what does not build or fit.
+    // Compiles the program and uploads the scene. Throws Error if the program does not build or memory does not
+    // suffice.
     Renderer(const Device &device, const FlatScene &scene, const RenderOptions &options);
 
-    // Asked after each launch with the samples a pixel (a fraction within a pass) and the kernel seconds so far; false
-    // stops.
-    using Continue = std::function<bool(double samples_done, double kernel_seconds)>;
+    // A callback after each launch, with the samples of each pixel so far (a fraction within a pass) and the kernel
+    // seconds; it returns false to stop.
+    using OnLaunch = std::function<bool(double samples_done, double kernel_seconds)>;
 
-    // Adds samples [next_sample(), end) of each pixel to the film; true when all were added. When stopped, what the
-    // last pass had finished is added too: pixels then differ in their counts, in the first pass some have no sample.
-    // Those that have more lie evenly over the image.
-    bool render(unsigned end, const Continue &go_on = {});
+    // Adds samples [next_sample(), end) of each pixel to the film. Returns false if it was stopped: then the finished
+    // launches of the last pass are added, too, so that pixels differ in their sample counts and may have none after
+    // the first pass. Pixels with more samples lie evenly over the image.
+    bool render(unsigned end, const OnLaunch &on_launch = {});
 
-    // Empties the film; the next sample is `first_sample` of `seed`.
+    // Empties the film. The next sample has the index `first_sample` and the random numbers of `seed`.
     void restart(unsigned seed, unsigned first_sample = 0);
 
     Film film() const;
-    unsigned next_sample() const { return next_; }
+    unsigned next_sample() const { return next_sample_; }
     double kernel_seconds() const { return kernel_seconds_; } // of all launches since the last restart
     double compile_seconds() const { return compile_seconds_; }
 
 private:
-    struct Shape { // of the launches; constant, because drivers compile a kernel anew for each
-        unsigned tile_width, tile_height, items_a_launch, local_size;
-        unsigned tiles, chunks; // work-items a pass: each tile's samples are cut into chunks
+    // How a pass is cut into launches and work-items: a work-item for each chunk of the samples of each tile. It is the
+    // same for all passes, because drivers compile a kernel anew for each shape.
+    struct LaunchShape {
+        unsigned tile_width, tile_height; // pixels
+        unsigned items_a_launch, local_size;
+        unsigned tiles, chunks; // of the image, and of a tile's samples
     };
-    Shape shape_of_launches() const;
+    LaunchShape launch_shape() const;
     double warm_up();
-    bool render_pass(unsigned samples, const Continue &go_on);
-    void set_pass_arguments(cl::Kernel &kernel, cl_uint place, unsigned chunk_samples, unsigned pass_samples);
+    bool render_pass(unsigned samples, const OnLaunch &on_launch);
+    void set_pass_arguments(cl::Kernel &kernel, cl_uint first_argument, unsigned chunk_samples, unsigned pass_samples);
     double launch(const cl::Kernel &kernel, unsigned items);
     unsigned next_pass_samples(unsigned left) const;
 
-    const Device device_; // handles: a copy shares the device
+    const Device device_; // a copy of handles to the same device
     Settings settings_;
     RenderOptions options_;
-    Shape shape_{};
+    LaunchShape shape_{};
     size_t pixels_ = 0;
     bool wide_filter_ = false;
     std::vector<cl::Buffer> scene_;
-    cl::Buffer slots_, film_, counts_, invalid_;
+    cl::Buffer samples_, film_, counts_, invalid_;
     cl::Kernel render_kernel_, gather_kernel_, clear_kernel_;
-    unsigned next_ = 0, slot_samples_ = 0;
+    unsigned next_sample_ = 0;
+    unsigned buffer_spp_ = 0; // samples of each pixel that samples_ has room for
     double kernel_seconds_ = 0, compile_seconds_ = 0;
-    double seconds_a_sample_ = 0; // of one sample of each pixel, by the last pass
+    double seconds_a_sample_ = 0; // kernel time of one sample of each pixel in the last pass; 0: no pass yet
 };
 
 } // namespace opal

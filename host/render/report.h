@@ -1,4 +1,4 @@
-// What a render tells of itself: one JSON object, for --json and for the EXR's header.
+// The report of a render: one JSON object, for --json and for the header of the EXR.
 #pragma once
 
 #include "device/context.h"
@@ -9,17 +9,19 @@
 
 namespace opal {
 
+// Seconds of the stages of a render, in wall time except for `render`, which is kernel time.
 struct RenderSeconds {
-    double load = 0, bvh = 0, compile = 0, render = 0 /* kernel time */, write = 0;
+    double load = 0, bvh = 0, compile = 0, render = 0, write = 0;
 };
 
-// One key an axis, as the command line names choices, and the numbers that go with them.
+// The strategy: a key for each axis with the choice's name on the command line, and the numeric options.
 nlohmann::json strategy_json(const SceneDescription &scene);
 
+// Device, strategy, statistics of the film, seconds, warnings and version. Luminances and colours are radiances.
 nlohmann::json report_json(const SceneDescription &scene, const DeviceInfo &device, int lanes, unsigned seed,
                            const Film &film, const RenderSeconds &seconds);
 
-// The same as header attributes of an image.
+// Adds the report to the image's metadata, which become header attributes: "opal.KEY" for each key.
 void add_metadata(Image &image, const nlohmann::json &report, const std::string &command_line);
 
 } // namespace opal

@@ -1,4 +1,4 @@
-// When a render has enough: a time, or an error.
+// Stop rules: render until a time has passed or a relative error is reached.
 #pragma once
 
 #include "render/renderer.h"
@@ -6,32 +6,32 @@
 namespace opal {
 
 struct StopRule {
-    double seconds = 0;        // of kernel time; 0: no limit
-    double relative_error = 0; // of the image's mean luminance, as its standard error; 0: no target
+    double seconds = 0;        // limit of kernel time; 0: none
+    double relative_error = 0; // target: standard error of the image's mean luminance over that mean; 0: none
     bool given() const { return seconds > 0 || relative_error > 0; }
 };
 
-struct Stopped {
-    unsigned spp = 0;         // samples a pixel that the film aims at
-    unsigned pilot_spp = 0;   // rendered to decide on spp and then discarded
-    double pilot_seconds = 0; // kernel time of those
-    bool complete = true;     // false: `go_on` said stop
+struct StopResult {
+    unsigned spp = 0;         // samples of each pixel that were to be rendered
+    unsigned pilot_spp = 0;   // samples of the pilot, which chose spp and was then discarded
+    double pilot_seconds = 0; // kernel time of the pilot
+    bool complete = true;     // false: on_launch stopped the render
 };
 
-// Renders into an empty film until the rule is met or `most` samples a pixel are there. restart() has been called.
+// Renders until the rule is met or each pixel has `max_spp` samples. The film must be empty: call restart(seed) before.
 //
-// time: stops at the first launch that ends past it; what stops it knows nothing of the samples' values.
+// A time limit stops at the first launch that ends after it. The decision does not depend on the samples' values.
 //
-// error: stopping when the estimated error has become small would prefer films that have not yet met their rare bright
-// samples: biased. Instead a pilot grows until it holds a tenth of the samples that it finds necessary; then the film
-// is emptied and filled with that many OTHER samples. Their number is independent of their values, so that mean and
-// variance are unbiased (Stein, "A two-sample test for a linear hypothesis whose power is independent of the variance",
-// 1945).
-Stopped render_until(Renderer &renderer, const StopRule &rule, unsigned seed, unsigned most,
-                     const Renderer::Continue &go_on);
+// An error target is met in two stages (Stein 1945, "A two-sample test for a linear hypothesis whose power is
+// independent of the variance"). A pilot grows until it holds a tenth of the samples that it finds necessary. Then the
+// film is emptied and filled with that many other samples. Their number does not depend on their values, so that mean
+// and variance are unbiased. To stop as soon as the estimated error is small would be biased: it prefers films that
+// have not yet met their rare bright samples.
+StopResult render_until(Renderer &renderer, const StopRule &rule, unsigned seed, unsigned max_spp,
+                        const Renderer::OnLaunch &on_launch);
 
-// The samples a pixel at which statistics of a film with `spp` would reach this relative standard error; with a margin
-// of 10 %, because the pilot's variance is itself an estimate.
+// The samples of each pixel that a film needs for this relative standard error, by a pilot of `spp` samples. The result
+// includes a margin of 10 %, because the pilot's variance is itself an estimate.
 double samples_for(const FilmStatistics &pilot, double spp, double relative_error);
 
 } // namespace opal

@@ -23,7 +23,7 @@ unsigned parse_count(const std::string &value, const char *what) {
     return static_cast<unsigned>(number);
 }
 
-// -1 is what other renderers' scenes write for "none".
+// Scenes of other renderers write -1 for "none".
 void set_max_depth(Strategy &strategy, const std::string &value) {
     strategy.max_depth =
         value == "none" || value == "-1" ? no_limit : parse_count(value, "max-depth ('none' for no limit)");
@@ -58,7 +58,8 @@ void set_specialise(Strategy &strategy, const std::string &value) {
         bool on;
     };
     static const std::vector<Row> switches = {{"on", true}, {"off", false}};
-    bool is_boolean = std::tolower(value[0]) == 't' || std::tolower(value[0]) == 'f'; // the XML's spelling
+    bool is_boolean =
+        std::tolower(value[0]) == 't' || std::tolower(value[0]) == 'f'; // "true" or "false", as the XML has it
     strategy.specialise = is_boolean ? parse_boolean(value) : find_row(switches, "specialise", value).on;
 }
 
@@ -98,7 +99,7 @@ StrategyOption option_of_axis(int axis) {
 
 constexpr bool university = true;
 
-// The nine names of the two dialects, and `path` for a path tracer whose lighting is a property.
+// The nine names of the two dialects, and `path`: a path tracer whose lighting is given by a property.
 const std::vector<IntegratorType> types = {
     {"normals", CHOICE_integrator_normals},
     {"ao", CHOICE_integrator_ao},

@@ -30,7 +30,7 @@ void set_option(Strategy &strategy, const std::string &name, const std::string &
 struct IntegratorType {
     std::string name;
     int integrator;          // CHOICE_integrator_*
-    bool university = false; // of the 2022 course: its default filter is the box
+    bool university = false; // a name of the 2022 course, whose default filter is the box
     int lighting = -1;       // CHOICE_lighting_*, or -1: left to the properties
     int rr = -1;             // CHOICE_rr_*, or -1
 };

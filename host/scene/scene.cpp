@@ -10,4 +10,16 @@ std::string SourcePlace::text() const {
     return column == 0 ? fmt::format("{}:{}", file, line) : fmt::format("{}:{}:{}", file, line, column);
 }
 
+#define OPAL_NAME(name) #name,
+const char *bsdf_name(unsigned kind) {
+    static const char *const names[] = {OPAL_BSDFS(OPAL_NAME)};
+    return names[kind];
+}
+
+const char *emitter_name(unsigned kind) {
+    static const char *const names[] = {OPAL_EMITTERS(OPAL_NAME)};
+    return names[kind];
+}
+#undef OPAL_NAME
+
 } // namespace opal

@@ -1,4 +1,4 @@
-// A scene as it was written, all defaults resolved: plain values in world units and double precision.
+// SceneDescription: a scene as its file describes it, with all defaults filled in, in world units and double precision.
 #pragma once
 
 #include "base/color.h"
@@ -16,12 +16,16 @@
 
 namespace opal {
 
-// Where in a file something was written; line and column count from 1, 0 where there is no such place.
+// A place in a file. Line and column count from 1; 0: unknown.
 struct SourcePlace {
     std::string file;
     int line = 0, column = 0;
     std::string text() const; // "file:line:col"
 };
+
+// Names of kinds, as the XML gives them: "diffuse", "mesh".
+const char *bsdf_name(unsigned kind);    // kind: BSDF_*
+const char *emitter_name(unsigned kind); // kind: EMITTER_*
 
 struct Bsdf {
     BsdfRecord record{}; // kind and parameters, ready for the device
@@ -33,7 +37,7 @@ struct TriangleMesh {
     std::vector<Vec3> normals;   // world space, unit; may be empty
     struct Corner {
         unsigned position, normal;
-    };                                            // normal = OPAL_NONE: geometric
+    };                                            // indices; normal OPAL_NONE: the geometric normal
     std::vector<std::array<Corner, 3>> triangles; // degenerate ones already dropped
 };
 
@@ -45,7 +49,7 @@ struct Mesh {
     std::string name; // file name or given name
     std::variant<TriangleMesh, Parallelogram> shape;
     Bsdf bsdf;
-    std::optional<Color> radiance; // of its area emitter, W / (m^2 sr)
+    std::optional<Color> radiance; // emitted by its area emitter, W / (m^2 sr)
     SourcePlace place;
 };
 
@@ -58,7 +62,7 @@ struct PointLight {
 struct Filter {
     int kind = FILTER_box;
     double radius = 0.5, stddev = 0.5, b = 1.0 / 3, c = 1.0 / 3;
-    bool given = false; // written in the scene, not the dialect's default
+    bool given = false; // false: the default of the dialect
 };
 
 struct Camera {
@@ -70,7 +74,7 @@ struct Camera {
     SourcePlace place;
 };
 
-struct SimpleLight { // integrator `simple`
+struct SimpleLight { // the one light of integrator `simple`
     Vec3 position;
     Color energy{};
 };
@@ -81,7 +85,7 @@ struct SceneDescription {
     std::vector<Mesh> meshes;
     std::vector<PointLight> point_lights;
     std::string integrator_type = "path_mis"; // as written, e.g. path_tracer_recursive; path_mis where there is none
-    bool university_dialect = false;          // that type is the 2022 course's: without <rfilter> the filter is a box
+    bool university_dialect = false;          // the integrator's name is one of the 2022 course
     Strategy strategy;
     bool normals_signed = false;
     SimpleLight simple_light;

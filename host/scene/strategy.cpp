@@ -8,7 +8,7 @@ namespace opal {
 
 namespace {
 
-std::string typed(std::string name) {
+std::string with_hyphens(std::string name) {
     std::replace(name.begin(), name.end(), '_', '-');
     return name;
 }
@@ -16,9 +16,9 @@ std::string typed(std::string name) {
 } // namespace
 
 std::span<const Axis> axes() {
-#define OPAL_CHOICE_ROW(axis, choice, help) {typed(#choice), help},
+#define OPAL_CHOICE_ROW(axis, choice, help) {with_hyphens(#choice), help},
 #define OPAL_AXIS_CHOICES(axis, help) static const Choice choices_##axis[] = {OPAL_CHOICES_##axis(OPAL_CHOICE_ROW)};
-#define OPAL_AXIS_ROW(axis, help) {typed(#axis), help, choices_##axis},
+#define OPAL_AXIS_ROW(axis, help) {with_hyphens(#axis), help, choices_##axis},
     OPAL_AXES(OPAL_AXIS_CHOICES)
     static const Axis table[] = {OPAL_AXES(OPAL_AXIS_ROW)};
     return table;
@@ -34,7 +34,7 @@ std::span<const MathModeRow> math_modes() {
 
 int find_choice(int axis, std::string_view name) {
     const Axis &row = axes()[axis];
-    const Choice &choice = find_row(row.choices, row.name, typed(std::string(name)));
+    const Choice &choice = find_row(row.choices, row.name, with_hyphens(std::string(name)));
     return static_cast<int>(&choice - row.choices.data());
 }
 

@@ -1,4 +1,4 @@
-// What the user may choose about how a scene is rendered: one choice an axis (cl/shared/strategy.h) and a few numbers.
+// Strategy: how a scene is rendered. One choice for each axis of cl/shared/strategy.h, and a few numbers.
 #pragma once
 
 #include "shared/strategy.h"

@@ -1,4 +1,5 @@
 // Record layouts, random numbers bit for bit, and math functions in ulp.
+#include "base/hash.h"
 #include "kernels/selftest_list.h"
 #include "probe/kernel_probe.h"
 #include "selftest/selftest.h"
@@ -108,7 +109,7 @@ Findings math_errors(const Device &device, const cl::Program &program, MathMode 
 struct KnownNumbers {
     const char *name;
     int sampler;
-    unsigned long long hash;
+    std::uint64_t hash;
 };
 constexpr KnownNumbers known_numbers[] = {
     {"independent numbers, wrong", CHOICE_sampler_independent, 0x11ccfe9af6c78d2b},
@@ -116,12 +117,11 @@ constexpr KnownNumbers known_numbers[] = {
     {"Sobol numbers, wrong", CHOICE_sampler_sobol, 0x3edb4088db211466},
 };
 
-unsigned long long hash_of(const Planes &planes) {
-    unsigned long long hash = 0xcbf29ce484222325ull;
-    for (float value : planes.values)
-        for (uint bits = std::bit_cast<uint>(value), byte = 0; byte < 4; byte++)
-            hash = (hash ^ (bits >> (8 * byte) & 255)) * 0x100000001b3ull;
-    return hash;
+std::uint64_t hash_of(const Planes &planes) {
+    static_assert(std::endian::native == std::endian::little);
+    Fnv1a hash;
+    hash.add(std::as_bytes(std::span(planes.values)));
+    return hash.value();
 }
 
 Findings check_numbers(const Device &device, const SelftestOptions &options) {

@@ -31,8 +31,8 @@ Point2 unclamped(const Domain &domain, Vec3 p) {
     switch (domain.kind) {
     case DomainKind::disk:
         return {p.x * p.x + p.y * p.y, azimuth(p)};
-    case DomainKind::triangle: // near the tip rounding carries x / (1 - y) far beyond 1, so x and y are judged
-                               // themselves
+    case DomainKind::triangle: // near the tip rounding carries x / (1 - y) far beyond 1, so x and y
+                               // are tested instead
         if (!(p.x >= -slack && p.y >= -slack && p.x + p.y <= 1 + slack))
             return {NAN, NAN};
         return {(1 - p.y) * std::abs(1 - p.y), p.y < 1 ? std::clamp(p.x / (1 - p.y), 0.0, 1.0) : 0};

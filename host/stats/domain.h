@@ -1,5 +1,5 @@
-// Where the sampling functions put their points, each domain laid out on a rectangle by a map that keeps areas, so that
-// equal cells of the rectangle are equal areas (or solid angles) of the domain.
+// Domains of sampling functions, each with an area-preserving map to a rectangle: equal cells of the rectangle are
+// equal areas (or solid angles) of the domain.
 #pragma once
 
 #include "base/math.h"
@@ -30,10 +30,10 @@ struct Domain {
 };
 
 const Domain &domain(DomainKind kind);
-const Domain &domain(const std::string &name); // Error that lists the names there are
+const Domain &domain(const std::string &name); // Error that lists the names
 
-// (u, v) of a point, and back. Nothing for a point outside the domain by more than a few roundings of single precision
-// (1e-5 of the domain's size; also a direction whose length is not 1), and for NaN.
+// (u, v) of a point, and back. Nothing for NaN and for points outside the domain, beyond a tolerance of 1e-5 of its
+// size for single precision; a direction whose length is not 1 is outside.
 std::optional<Point2> to_rectangle(const Domain &domain, Vec3 point);
 Vec3 from_rectangle(const Domain &domain, Point2 uv);
 

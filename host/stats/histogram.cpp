@@ -6,7 +6,7 @@
 namespace opal::stats {
 namespace {
 
-// Cell of x in [lo, hi] cut in n; the upper end belongs to the last.
+// Index of the cell of x, for [lo, hi] cut into n cells. hi belongs to the last one.
 size_t bin(double x, double lo, double hi, int n) {
     return size_t(std::clamp(int((x - lo) / (hi - lo) * n), 0, n - 1));
 }
@@ -101,7 +101,7 @@ DensityTest density_test(const Histogram &histogram, const Density &density, boo
     }
     std::vector<double> observed = histogram.counts, expected = test.expected;
     observed.insert(observed.end(), {histogram.outside, histogram.failed});
-    double missing = 1 - test.mass.value; // what rounding leaves of 0 is no probability
+    double missing = 1 - test.mass.value; // rounding may leave a little of 0
     bool no_mass = std::abs(missing) <= options.mass_tolerance && histogram.failed == 0;
     expected.insert(expected.end(), {0.0, may_fail && !no_mass ? n * missing : 0.0});
     test.result = chi_square_test(observed, expected, options);

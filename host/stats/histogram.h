@@ -1,4 +1,4 @@
-// Samples counted on a grid over a domain, and what a density says the counts should be.
+// Histograms of samples over a domain, and the test of their counts against a density.
 #pragma once
 
 #include "stats/domain.h"
@@ -6,9 +6,9 @@
 
 namespace opal::stats {
 
-// A density over the domain's own measure (1 / area or 1 / sr), asked for many points at once.
+// A probability density over the domain's measure (1 / area or 1 / sr), evaluated at many points at once.
 using Density = std::function<void(std::span<const Vec3> points, std::span<double> values)>;
-Density each(std::function<double(Vec3)> density); // from one that takes a point at a time
+Density each(std::function<double(Vec3)> density); // from a function of one point
 
 struct Grid {
     const Domain *domain = nullptr;
@@ -21,19 +21,19 @@ struct Grid {
 struct Histogram {
     explicit Histogram(const Grid &g) : grid(g), counts(g.cells()) {}
     void add(Vec3 point);
-    void add_failed() { ++failed; } // a draw that gave no sample (weight 0)
+    void add_failed() { ++failed; } // a draw without a sample (weight 0)
     Grid grid;
     std::vector<double> counts;
     double outside = 0, failed = 0;
     double n() const; // all draws
 };
 
-// How a density is integrated for a test with n draws: an error far below the noise sqrt(n p) of a cell's count.
+// Tolerances of the integration for a test with n draws: far below the noise sqrt(n p) of a cell's count.
 QuadratureOptions expectation_options(double n);
 
 // The density's integral over each cell of the grid, by adaptive quadrature. options.splits are in (u, v).
 std::vector<Integral> integrate_density(const Grid &grid, const Density &density, const QuadratureOptions &options);
-Integral total(std::span<const Integral> cells); // converged where each cell is
+Integral total(std::span<const Integral> cells); // converged if every cell is
 
 struct DensityTest {
     Integral mass;                // integral of the density over the domain
@@ -41,10 +41,9 @@ struct DensityTest {
     TestResult result;
 };
 
-// Chi-square of the histogram against the density. Points outside are rejected at once. `may_fail` says that draws
-// without a sample are right, with the probability 1 - mass that the density leaves; else such a draw counts as one
-// outside. relative_error: that quadrature shall reach in a cell. Also rejected: an integral that did not converge,
-// since what it says cannot be held against anything.
+// Pearson's chi-square test of the histogram against the density. Rejects at once if there are points outside the
+// domain, or if an integral did not converge. may_fail: draws may give no sample, with probability 1 - mass; without it
+// such a draw counts as a point outside. relative_error: of the quadrature in a cell.
 DensityTest density_test(const Histogram &histogram, const Density &density, bool may_fail = false,
                          std::vector<double> splits_u = {}, std::vector<double> splits_v = {},
                          const ChiSquareOptions &options = {}, double relative_error = 1e-5);

@@ -19,7 +19,7 @@ struct Pool {
     double observed = 0, expected = 0;
 };
 
-// Cells in ascending order of expectation, joined until each pool has min_expected; a remainder joins the last pool.
+// Pools cells, in ascending order of expectation, until each pool expects min_expected. The rest joins the last pool.
 std::vector<Pool> pool_cells(std::span<const double> observed, std::span<const double> expected, double min_expected) {
     std::vector<size_t> order(expected.size());
     std::iota(order.begin(), order.end(), size_t(0));

@@ -1,5 +1,5 @@
-// Hypothesis tests. Each returns a p-value; whatever cannot be judged (NaN, infinite, too few observations) has p = 0:
-// a defect can be rejected by mistake and never passes by mistake.
+// Hypothesis tests. Each returns a p-value. Data that cannot be judged (NaN, infinite, too few observations) give p =
+// 0, so that a defect never passes by mistake.
 #pragma once
 
 #include "stats/moments.h"
@@ -12,12 +12,12 @@ namespace opal::stats {
 struct TestResult {
     double statistic = 0, dof = 0;
     double p_value = 0;
-    std::string reason; // why it is rejected without a statistic, else empty
+    std::string reason; // of a rejection without a statistic; else empty
     bool rejected(double significance) const { return !(p_value >= significance); }
 };
 
 struct ChiSquareOptions {
-    double min_expected = 5;      // cells below are pooled, in order of their expectation, until a pool reaches it
+    double min_expected = 5;      // cells that expect fewer are pooled, in ascending order, until a pool reaches it
     double mass_tolerance = 1e-3; // allowed relative difference between the sums of expected and observed
 };
 
@@ -29,8 +29,8 @@ struct ChiSquareOptions {
 TestResult chi_square_test(std::span<const double> observed, std::span<const double> expected,
                            const ChiSquareOptions &options = {});
 
-// The standard error of a mean is taken to be at least this fraction of the larger mean: what summing in single
-// precision may do to a sample without variance. Relative, so that dark pixels count as bright ones do.
+// Least standard error of a mean, as a fraction of the larger mean: the rounding of sums in single precision, which is
+// left where a sample has no variance.
 inline constexpr double default_relative_floor = 1e-5;
 
 // Two-sided p-value of a standardised difference; dof = infinity is the z-test. NaN gives 0.
@@ -40,25 +40,27 @@ double two_sided_p(double statistic, double dof);
 TestResult difference_test(double difference, double error, double dof, double scale,
                            double relative_floor = default_relative_floor);
 
-// Does the sample have the mean `reference`? By the normal distribution, or by Student's t with n - 1.
+// Tests that the sample has the mean `reference`, by the normal distribution or by Student's t with n - 1.
 TestResult z_test(Sample sample, double reference, double relative_floor = default_relative_floor);
 TestResult t_test(Sample sample, double reference, double relative_floor = default_relative_floor);
 
-// Have two independent samples one mean? t with Welch and Satterthwaite's degrees of freedom (Welch, Biometrika 34,
-// 1947).
+// Tests that two independent samples have one mean: t with Welch and Satterthwaite's degrees of freedom (Welch,
+// Biometrika 34, 1947).
 TestResult welch_test(Sample a, Sample b, double relative_floor = default_relative_floor);
 // (va + vb)^2 / (va^2/da + vb^2/db) for the sum of two variance estimates; infinity where both are 0.
 double welch_dof(double va, double da, double vb, double db);
 
-// Are the values (p-values of a suite) uniform on [0, 1]? Kolmogorov-Smirnov with the finite-n correction of Stephens,
-// JRSS B 32, 1970: lambda = (sqrt n + 0.12 + 0.11 / sqrt n) D. Needs 4 values; one outside [0, 1] is rejected.
+// Tests that the values (p-values of a suite) are uniform on [0, 1]: Kolmogorov-Smirnov with the finite-n correction of
+// Stephens, JRSS B 32, 1970: lambda = (sqrt n + 0.12 + 0.11 / sqrt n) D. Needs 4 values; one outside [0, 1] is
+// rejected.
 TestResult ks_uniform_test(std::span<const double> values);
 
-// Did `successes` of `trials` happen with this probability? Exact and two-sided: twice the smaller tail.
+// Tests that `successes` of `trials` happened with this probability. Exact and two-sided: twice the smaller tail.
 TestResult binomial_test(double successes, double trials, double probability);
 
-// Sidak, JASA 62, 1967: the level of each of `count` tests that keeps the level `significance` of them all, and the
-// p-value of the whole whose smallest is p. Exact for independent tests, conservative for those that hang together.
+// Sidak's correction (JASA 62, 1967) for `count` tests: the level of each that gives all together the level
+// `significance`, and the p-value of all together from the smallest p. Exact for independent tests, conservative for
+// positively dependent ones.
 double sidak_level(double significance, double count);
 double sidak_p(double smallest_p, double count);
 

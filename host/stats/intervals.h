@@ -1,5 +1,5 @@
-// Confidence intervals. Where the data cannot say (fewer than two observations, something not finite, a ratio of what
-// is not positive) the interval is the whole line: it claims nothing.
+// Confidence intervals. Data that cannot tell (fewer than two observations, values that are not finite, a ratio of
+// means that are not positive) give the whole line.
 #pragma once
 
 #include "stats/moments.h"
@@ -26,8 +26,8 @@ Interval positive_mean_interval(Sample sample, double confidence);
 // means add, with Welch's degrees of freedom.
 Interval ratio_interval(Sample a, Sample b, double confidence);
 
-// The same for pairs (same seeds, same run): a_i / mean(a) - b_i / mean(b) carries the covariance. a and b have one
-// length.
+// The same for paired samples (same seeds, same run), whose covariance counts: by a_i / mean(a) - b_i / mean(b). a and
+// b have one length.
 Interval paired_ratio_interval(std::span<const double> a, std::span<const double> b, double confidence);
 
 // Least squares of log y = intercept + slope log x, x and y positive. `weights`, 1 / variance of log y up to a factor,

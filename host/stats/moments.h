@@ -1,17 +1,16 @@
-// Running sums, means and variances that neither cancel nor depend on how the work was split.
+// Running sums, means and variances, without cancellation and independent of how the work is split.
 #pragma once
 
 #include <cmath>
 
 namespace opal::stats {
 
-// What is known of a sample: its size, mean, and the unbiased variance of ONE observation (not of the mean).
+// A sample: its size, its mean, and the unbiased variance of ONE observation (not of the mean).
 struct Sample {
     double n = 0, mean = 0, variance = 0;
 };
 
-// Sum with the rounding errors carried apart (Neumaier, ZAMM 54, 1974): error of a few ulp whatever the number of
-// terms.
+// Compensated sum (Neumaier, ZAMM 54, 1974): an error of a few ulp, whatever the number of terms.
 class CompensatedSum {
 public:
     void add(double x) {

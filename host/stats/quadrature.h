@@ -1,5 +1,5 @@
-// Adaptive quadrature in double, in one and two dimensions. The integrand is asked for many points at once, because a
-// pdf is computed on the device: one round of subdivision is one call.
+// Adaptive quadrature in double, in one and two dimensions. The integrand is evaluated at many points at once, one call
+// a round of subdivision, because densities are computed on the device.
 #pragma once
 
 #include <functional>
@@ -19,15 +19,15 @@ struct Rectangle {
 
 struct Integral {
     double value = 0;
-    double error = 0;       // estimated, of the value, absolute; too large rather than too small for smooth integrands
-    bool converged = false; // error <= max(relative |value|, absolute); false also where the value is not finite
+    double error = 0;       // absolute, estimated; an upper bound for smooth integrands
+    bool converged = false; // error <= max(relative |value|, absolute), and the value is finite
 };
 
 struct QuadratureOptions {
     double relative = 1e-8, absolute = 0;
     size_t max_evaluations = 4'000'000;
-    // Where the integrand has an edge or a peak: the first subdivision. A peak much narrower than its piece is else not
-    // seen.
+    // The first subdivision: places where the integrand has an edge or a peak. A peak much narrower than its piece
+    // would be missed.
     std::vector<double> splits_x, splits_y;
 };
 

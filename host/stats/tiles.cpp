@@ -16,7 +16,7 @@ bool fits(const Estimate &e) {
            std::all_of(e.mean.begin(), e.mean.end(), whole) && std::all_of(e.variance.begin(), e.variance.end(), whole);
 }
 
-// Mean over the box, the variance of that mean, and Satterthwaite's sum of v^2 / dof.
+// Mean over a box of pixels, the variance of that mean, and Satterthwaite's sum of v^2 / dof.
 struct BoxSums {
     double mean = 0, variance = 0, variance_squares = 0;
 };
@@ -37,7 +37,7 @@ BoxSums sum_box(const Estimate &e, size_t channel, const PixelBox &box) {
     return {mean.value() / n, negative ? NAN : variance.value() / (n * n), squares.value() / (n * n * n * n)};
 }
 
-// Raises a's variance to what b's samples would have given in a's number; see tiles.h.
+// Raises a's variance to that of b, scaled to a's number of samples; see tiles.h.
 void borrow_variance(BoxSums &a, const BoxSums &b, double samples_b_over_a) {
     if (!(a.variance < b.variance * samples_b_over_a)) // also where a's is NaN, which must stay
         return;
@@ -45,8 +45,8 @@ void borrow_variance(BoxSums &a, const BoxSums &b, double samples_b_over_a) {
     a.variance_squares = b.variance_squares * samples_b_over_a * samples_b_over_a;
 }
 
-// Variance of a pixel's mean by its mean, over the pixels that have noise: how large one hit is, divided by the
-// samples.
+// Size of one hit over the number of samples: the variance of a pixel's mean over its mean, averaged over the pixels
+// that have noise.
 double quantum_of(const Estimate &e, size_t channel) {
     CompensatedSum mean, variance;
     for (size_t i = 0; i < e.variance[channel].size(); ++i)
@@ -57,7 +57,7 @@ double quantum_of(const Estimate &e, size_t channel) {
     return mean.value() > 0 ? variance.value() / mean.value() : 0;
 }
 
-// Raises a variance of few hits (`own` are the sums before any other rule) to that of hits of the quantum's size.
+// Raises the variance of a box with few hits to that of hits of the quantum's size. own: its sums before other rules.
 void allow_for_rare_hits(BoxSums &sums, const BoxSums &own, double sure_hits, double least_variance) {
     if (own.mean * own.mean >= sure_hits * own.variance && (own.mean != 0 || sure_hits == 0))
         return;
@@ -67,7 +67,7 @@ void allow_for_rare_hits(BoxSums &sums, const BoxSums &own, double sure_hits, do
     }
 }
 
-// Variance of a pixel's mean by the square of the mean around it, over the image: how far one hit moves a pixel.
+// How far one hit moves a pixel: the variance of a pixel's mean over the square of the mean around it.
 double relative_variance_of(const Estimate &e, size_t channel, const std::vector<PixelBox> &tiles) {
     CompensatedSum variance, squares;
     for (const PixelBox &tile : tiles)
@@ -79,7 +79,7 @@ double relative_variance_of(const Estimate &e, size_t channel, const std::vector
     return squares.value() > 0 ? variance.value() / squares.value() : 0;
 }
 
-// What the darker estimate lacks may be light that it finds by rare hits and has not met here.
+// The darker estimate may lack light that it finds only by rare hits, none of which fell into this box.
 void allow_for_missed_hits(BoxSums &darker, const BoxSums &brighter, double relative_variance_a_pixel) {
     const double lacking = brighter.mean - darker.mean;
     if (lacking > 0 && std::isfinite(lacking))
@@ -116,7 +116,7 @@ TestResult judge_tile(const Channel &c, const PixelBox &box, const TileOptions &
     return judge(a, b, o);
 }
 
-// z of the same two-sided p and sign; a tile that could not be judged (NaN) is infinitely bad.
+// z with the same sign and two-sided p. A tile that cannot be judged (NaN) gets infinity.
 double equivalent_z(const TestResult &test) {
     return std::copysign(-normal_quantile(test.p_value / 2), std::isnan(test.statistic) ? 1 : test.statistic);
 }
@@ -138,7 +138,7 @@ PixelBox join(const PixelBox &a, const PixelBox &b) {
     return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
 }
 
-// The tiles connected with `start` among those not `seen` that are significant with its sign.
+// The region of `start`: connected tiles that are significant with its sign and not `seen` yet.
 std::vector<size_t> flood(const TileTest &t, size_t channel, size_t start, double significance,
                           std::vector<bool> &seen) {
     size_t tiles = size_t(t.columns) * size_t(t.rows), columns = size_t(t.columns), base = channel * tiles;

@@ -1,12 +1,12 @@
-// Which strategies make no sense for a scene.
+// The check of a strategy against its scene.
 #pragma once
 
 #include "scene/scene.h"
 
 namespace opal {
 
-// Refuses, after all overrides, a strategy that makes no sense on this scene: Error with the reason. Warns of one that
-// leaves light out or may not end.
+// Error with the reason if the scene's strategy makes no sense on it. Warns if the strategy misses light or may not
+// end. Call it after all overrides.
 void check_strategy(const SceneDescription &scene);
 
 } // namespace opal

@@ -40,10 +40,10 @@ std::map<std::string, std::string> overrides_of(const std::string &text) {
     return overrides;
 }
 
-// What of a scene decides which axes matter, with its strategy; the shapes are left out, so that copies are cheap.
-class Candidates {
+// Finds all combinations. Copies the scene without its shapes, so that copies are cheap.
+class Combinations {
 public:
-    explicit Candidates(const SceneDescription &scene) : scene_(scene), own_(scene.strategy.choices) {
+    explicit Combinations(const SceneDescription &scene) : scene_(scene), own_(scene.strategy.choices) {
         size_t emitters = scene.point_lights.size();
         for (Mesh &mesh : scene_.meshes) {
             const auto *triangles = std::get_if<TriangleMesh>(&mesh.shape);
@@ -67,7 +67,7 @@ private:
     bool many_emitters_ = false, light_triangles_ = false, diffuse_ = false, refracts_ = false;
     std::vector<Choices> found_;
 
-    // The axes are decided in order; whether one matters depends on those before it.
+    // Axes are decided in order. Whether an axis matters depends on the choices of the axes before it.
     bool matters(int axis, const Choices &c) const {
         const int integrator = c[AXIS_integrator];
         const bool path = integrator == CHOICE_integrator_path,
@@ -101,7 +101,7 @@ private:
         return true;
     }
 
-    bool says_the_same(int axis, int choice) const { // as another choice
+    bool repeats_another(int axis, int choice) const {
         return axis == AXIS_rr && choice == CHOICE_rr_throughput_eta && !refracts_;
     }
 
@@ -109,12 +109,12 @@ private:
         if (axis == AXIS_COUNT)
             return add(chosen);
         if (!matters(axis, chosen)) {
-            if (axis == AXIS_mis) // one-sample means nothing elsewhere
+            if (axis == AXIS_mis) // one_sample has no meaning without MIS
                 chosen[axis] = CHOICE_mis_balance;
             return extend(axis + 1, chosen);
         }
         for (int choice = 0; choice < int(axes()[axis].choices.size()); choice++) {
-            if (!is_unbiased_and_ends(axis, choice) || says_the_same(axis, choice))
+            if (!is_unbiased_and_ends(axis, choice) || repeats_another(axis, choice))
                 continue;
             chosen[axis] = choice;
             extend(axis + 1, chosen);
@@ -126,7 +126,7 @@ private:
         try {
             check_strategy(scene_);
         } catch (const Error &) {
-            return; // makes no sense
+            return;
         }
         found_.push_back(chosen);
     }
@@ -209,7 +209,7 @@ std::vector<NamedStrategy> named_strategies(const SceneDescription &scene, const
 }
 
 std::vector<NamedStrategy> sensible_strategies(const SceneDescription &scene, size_t most) {
-    std::vector<Choices> all = Candidates(scene).all();
+    std::vector<Choices> all = Combinations(scene).all();
     if (const auto own = std::find(all.begin(), all.end(), scene.strategy.choices); own != all.end())
         std::rotate(all.begin(), own, own + 1);
     if (all.size() > most)

@@ -1,4 +1,4 @@
-// Strategies to hold against each other on one scene.
+// Combinations of choices: the strategies that can be compared on one scene.
 #pragma once
 
 #include "scene/scene.h"
@@ -10,22 +10,22 @@ struct NamedStrategy {
     Strategy strategy;
 };
 
-// 'lighting=mis,mis=power' changes the scene's strategy as the command line's options would. Throws Error for what does
-// not exist or makes no sense on this scene.
+// The scene's strategy with overrides as the command line has them: 'lighting=mis,mis=power'. Error if one does not
+// exist or makes no sense on this scene.
 NamedStrategy named_strategy(const SceneDescription &scene, const std::string &text);
 bool is_same(const Strategy &a, const Strategy &b);
 
-// 'a;b' in its parts, without blanks around them.
+// The parts of 'a;b', without blanks around them; empty parts are left out.
 std::vector<std::string> split(const std::string &text, char separator);
 
-// 'lighting=mis,mis=power;lighting=emitter'. Throws Error besides where one is there twice.
+// The strategies of 'lighting=mis,mis=power;lighting=emitter'. Error as above, and if two are the same.
 std::vector<NamedStrategy> named_strategies(const SceneDescription &scene, const std::string &text);
 
-// The combinations of choices that estimate what the scene's integrator does, without bias and in finite time, each
-// once: an axis that changes nothing here (the MIS heuristic without MIS, the choice among one emitter) keeps the
-// scene's choice. Left out: BSDF sampling where there are point lights, endless paths. All of them if there are at most
-// `most`, else a covering set: every pair of choices that occurs in one of them occurs in the set (greedy; Cohen et
-// al., IEEE TSE 23, 1997). The scene's own strategy comes first where it is among them.
+// All unbiased strategies that end and have the expectation of the scene's integrator, each once. An axis that changes
+// nothing on this scene (the MIS heuristic without MIS, the choice among one emitter) keeps the scene's choice. BSDF
+// sampling is left out if there are point lights, which it cannot hit. If there are more than `most`, the result is a
+// covering set: every pair of choices that occurs in a strategy occurs in the set (greedy; Cohen et al., IEEE TSE 23,
+// 1997). The scene's own strategy comes first if it is among them.
 std::vector<NamedStrategy> sensible_strategies(const SceneDescription &scene, size_t most = 12);
 
 } // namespace opal

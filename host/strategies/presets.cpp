@@ -12,9 +12,10 @@ namespace opal {
 namespace {
 
 struct PresetRow {
-    std::string name; // of the strategy
+    std::string name; // as in Candidate
     const char *label;
-    bool path, direct, only_all; // for which integrators; `all` has rows that `course` has not
+    bool path, direct; // the integrators it is for
+    bool only_all;     // not in `course`
 };
 
 const std::vector<PresetRow> preset_rows = {
@@ -30,9 +31,9 @@ const std::vector<PresetRow> preset_rows = {
     {"lighting=mis,mis=power,rr=throughput", "MIS, power; roulette by throughput", true, false, true},
 };
 
-class List {
+class CandidateList {
 public:
-    List(const SceneDescription &scene) : scene_(scene) {}
+    explicit CandidateList(const SceneDescription &scene) : scene_(scene) {}
 
     void add(const std::string &name, const std::string &label) {
         Candidate candidate{name, label, scene_};
@@ -81,7 +82,7 @@ void check_one_image(const std::vector<Candidate> &all) {
 
 std::vector<Candidate> parse_strategies(const SceneDescription &scene, const std::vector<std::string> &words,
                                         const std::vector<std::string> &math) {
-    List list(scene);
+    CandidateList list(scene);
     for (const std::string &word : words.empty() ? std::vector<std::string>{"course"} : words)
         for (const std::string &part : split(word, ';'))
             if (part == "course" || part == "all")
@@ -93,7 +94,7 @@ std::vector<Candidate> parse_strategies(const SceneDescription &scene, const std
             else
                 list.add(part, part);
     if (!math.empty()) {
-        List crossed(scene);
+        CandidateList crossed(scene);
         for (const Candidate &c : list.all)
             for (const std::string &mode : math)
                 crossed.add(c.name + ",math=" + mode, c.label + "; " + mode + " math");

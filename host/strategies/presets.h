@@ -1,4 +1,4 @@
-// The strategies that a sweep compares.
+// Presets: named lists of strategies for a sweep, and the parser of --strategies.
 #pragma once
 
 #include "scene/scene.h"
@@ -9,16 +9,16 @@
 namespace opal {
 
 struct Candidate {
-    std::string name;       // "lighting=mis,mis=power": what --strategies takes; the key in sweep.json
-    std::string label;      // for people: "MIS, power"
+    std::string name;       // as --strategies takes it, and the key in sweep.json: "lighting=mis,mis=power"
+    std::string label;      // for the page: "MIS, power"
     SceneDescription scene; // with the strategy set and checked
-    size_t device = 0;      // place among those that are compared
+    size_t device = 0;      // index among the compared devices
 };
 
-// words: presets (`course`, `all`) and lists "axis=value,..." as named_strategy takes them; empty: `course`. math:
-// modes to cross them with; may be empty. Error: what does not exist or makes no sense, a strategy that is there twice,
-// and strategies that do not estimate one image (another integrator or max-depth). A preset leaves out what the scene
-// cannot do without bias (lighting bsdf with point lights).
+// The strategies named by `words`: presets (`course`, `all`), or lists "axis=value,..." as named_strategy takes them;
+// none: `course`. Each is crossed with the modes in `math`, if there are any. A preset leaves out strategies that are
+// biased on this scene (lighting bsdf with point lights). Error if a strategy does not exist, makes no sense, is there
+// twice, or has another expectation than the others (another integrator or max-depth).
 std::vector<Candidate> parse_strategies(const SceneDescription &scene, const std::vector<std::string> &words,
                                         const std::vector<std::string> &math);
 

@@ -15,14 +15,14 @@ namespace {
 using stats::Moments;
 using stats::Sample;
 
-template <class Value> std::vector<double> values_of(const Point &point, Value value) {
+template <class Value> std::vector<double> values_of(const SweepPoint &point, Value value) {
     std::vector<double> values;
     for (const Replicate &r : point.replicates)
         values.push_back(value(r));
     return values;
 }
 
-template <class Value> Sample sample_of(const Point &point, Value value) {
+template <class Value> Sample sample_of(const SweepPoint &point, Value value) {
     Moments moments;
     for (double v : values_of(point, value))
         moments.add(v);
@@ -32,20 +32,22 @@ template <class Value> Sample sample_of(const Point &point, Value value) {
 double mse_seconds(const Replicate &r) { return r.mse * r.seconds; }
 double rel_mse_seconds(const Replicate &r) { return r.rel_mse * r.seconds; }
 
-// Of two points whose replicates went in rounds, so that what slowed one slowed the other.
-template <class Value> stats::Interval ratio_of(const Point &a, const Point &b, Value value) {
+// The ratio of two points' means. Replicates are paired by rounds, because a disturbance of the machine slows a whole
+// round.
+template <class Value> stats::Interval ratio_of(const SweepPoint &a, const SweepPoint &b, Value value) {
     std::vector<double> x = values_of(a, value), y = values_of(b, value);
     const size_t rounds = std::min(x.size(), y.size());
     x.resize(rounds), y.resize(rounds);
     return stats::paired_ratio_interval(x, y, sweep_confidence);
 }
 
-// Replicates are independent; the samples of one replicate's points are not, so that each gives one slope.
+// The mean slope of log MSE against log spp. Each replicate gives one slope: replicates are independent of each other,
+// the points of one replicate share samples and are not.
 stats::Interval slope_of(const StrategyRecord &s) {
     Moments slopes;
     for (size_t r = 0; r < s.points.back().replicates.size(); r++) {
         std::vector<double> spp, mse;
-        for (const Point &p : s.points)
+        for (const SweepPoint &p : s.points)
             if (r < p.replicates.size() && p.replicates[r].mse > 0) {
                 spp.push_back(p.spp);
                 mse.push_back(p.replicates[r].mse);
@@ -57,7 +59,8 @@ stats::Interval slope_of(const StrategyRecord &s) {
     return stats::mean_interval(slopes.sample(), sweep_confidence);
 }
 
-void judge_bias(StrategySummary &s, const Point &largest, const ReferenceRecord &reference) {
+// Welch's test of the mean luminance against the reference's.
+void test_bias(StrategySummary &s, const SweepPoint &largest, const ReferenceRecord &reference) {
     const Sample means = sample_of(largest, [](const Replicate &r) { return r.mean_luminance; });
     if (means.n < 2 || !(reference.mean_luminance > 0))
         return;
@@ -85,7 +88,7 @@ SweepSummary summarise(const SweepRecord &record) {
             continue;
         StrategySummary s;
         s.record = &r;
-        for (const Point &p : r.points) {
+        for (const SweepPoint &p : r.points) {
             const auto mean = [&](double Replicate::*f) {
                 return sample_of(p, [f](const Replicate &x) { return x.*f; });
             };
@@ -95,7 +98,7 @@ SweepSummary summarise(const SweepRecord &record) {
         }
         s.slope = slope_of(r);
         s.cost = stats::positive_mean_interval(sample_of(r.points.back(), rel_mse_seconds), sweep_confidence);
-        judge_bias(s, r.points.back(), record.reference);
+        test_bias(s, r.points.back(), record.reference);
         summary.strategies.push_back(std::move(s));
     }
     std::vector<StrategySummary> &all = summary.strategies;
@@ -104,13 +107,13 @@ SweepSummary summarise(const SweepRecord &record) {
     };
     summary.best = size_t(std::min_element(all.begin(), all.end(), cheaper) - all.begin());
     for (StrategySummary &s : all) {
-        const Point &own = s.record->points.back(), &first = all[0].record->points.back(),
-                    &best = all[summary.best].record->points.back();
-        s.slower = ratio_of(own, best, rel_mse_seconds);
+        const SweepPoint &own = s.record->points.back(), &first = all[0].record->points.back(),
+                         &best = all[summary.best].record->points.back();
+        s.relative_time = ratio_of(own, best, rel_mse_seconds);
         s.efficiency = ratio_of(first, own, mse_seconds);
         s.rel_efficiency = ratio_of(first, own, rel_mse_seconds);
         if (&s == &all[summary.best])
-            s.slower = {1, 1, 1};
+            s.relative_time = {1, 1, 1};
         if (&s == &all[0])
             s.efficiency = s.rel_efficiency = {1, 1, 1};
     }
@@ -124,7 +127,7 @@ nlohmann::json json_of(const SweepSummary &summary) {
         nlohmann::json j = {{"name", s.record->name},
                             {"slope", interval(s.slope)},
                             {"seconds_to_rel_mse_1_percent", interval(s.time_to(0.01))},
-                            {"time_relative_to_best", interval(s.slower)},
+                            {"time_relative_to_best", interval(s.relative_time)},
                             {"efficiency_relative_to_first", interval(s.efficiency)},
                             {"rel_mse_efficiency_relative_to_first", interval(s.rel_efficiency)},
                             {"bias", s.bias},

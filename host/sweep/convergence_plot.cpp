@@ -8,9 +8,10 @@ namespace opal {
 
 namespace {
 
+// The size of the plot and its margins, pixels.
 constexpr double width = 930, height = 500, left = 110, right = 250, top = 20, bottom = 60;
 
-const char *const look = R"(<style>
+const char *const style_sheet = R"(<style>
 svg { font: 13px system-ui, sans-serif } svg text { fill: #222 }
 .decade { stroke: #ccc } .minor { stroke: #eee } .bar { stroke-width: 1.5 }
 .strategy:hover path { stroke-width: 5 } svg:hover .strategy { opacity: .25 } svg:hover .strategy:hover { opacity: 1 }
@@ -24,6 +25,7 @@ struct LogAxis {
     double operator()(double value) const { return from + (to - from) * (std::log10(value) - low) / (high - low); }
 };
 
+// The axis over [least, most], widened to multiples of half a decade.
 LogAxis axis_of(double least, double most, double from, double to) {
     const double low = std::floor(std::log10(least) * 2 - 0.1) / 2, high = std::ceil(std::log10(most) * 2 + 0.1) / 2;
     return {low, high, from, to};
@@ -41,19 +43,19 @@ std::string grid(const LogAxis &x, const LogAxis &y) {
     std::string svg;
     for (const bool horizontal : {true, false}) {
         const LogAxis &a = horizontal ? x : y;
-        const bool few = a.high - a.low < 2; // decades: label 2 and 5 too
+        const bool label_all = a.high - a.low < 2; // with less than two decades, 2 and 5 have labels, too
         for (int decade = int(std::floor(a.low)); decade <= a.high; decade++)
             for (const int digit : {1, 2, 5}) {
-                const double value = digit * std::pow(10, decade), place = a(value);
+                const double value = digit * std::pow(10, decade), pixel = a(value);
                 if (std::log10(value) < a.low - 1e-9 || std::log10(value) > a.high + 1e-9)
                     continue;
                 const std::string style = digit == 1 ? "class='decade'" : "class='minor'";
-                svg += horizontal ? line(place, top, place, height - bottom, style)
-                                  : line(left, place, width - right, place, style);
-                if (digit == 1 || few)
+                svg += horizontal ? line(pixel, top, pixel, height - bottom, style)
+                                  : line(left, pixel, width - right, pixel, style);
+                if (digit == 1 || label_all)
                     svg += horizontal
-                               ? text(place, height - bottom + 18, "text-anchor='middle'", fmt::format("{:g}", value))
-                               : text(left - 8, place + 4, "text-anchor='end'", fmt::format("{:g} %", 100 * value));
+                               ? text(pixel, height - bottom + 18, "text-anchor='middle'", fmt::format("{:g}", value))
+                               : text(left - 8, pixel + 4, "text-anchor='end'", fmt::format("{:g} %", 100 * value));
             }
     }
     svg += text((left + width - right) / 2, height - 14, "text-anchor='middle'", "time, seconds (fewer is better)");
@@ -98,11 +100,11 @@ std::string html_text(const std::string &plain) {
     return out;
 }
 
-// Okabe and Ito's colours, which colour-blind people can tell apart, then darker ones.
-std::string strategy_color(size_t place) {
+// The colours of Okabe and Ito, which colour-blind people can tell apart, then darker ones.
+std::string strategy_color(size_t index) {
     static const char *const colors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9",
                                          "#555555", "#7b3294", "#8c510a", "#1b7837", "#b2182b", "#01665e"};
-    return colors[place % std::size(colors)];
+    return colors[index % std::size(colors)];
 }
 
 std::string svg_file(std::string svg) {
@@ -125,7 +127,7 @@ std::string convergence_plot(const SweepSummary &summary) {
     const LogAxis x = axis_of(x0, x1, left, width - right), y = axis_of(y0, y1, height - bottom, top);
     std::string svg = fmt::format(
         "<svg viewBox='0 0 {} {}' role='img' aria-label='relative mean squared error against time'>\n", width, height);
-    svg += look + grid(x, y);
+    svg += style_sheet + grid(x, y);
     double legend = top + 14;
     for (size_t i = 0; i < summary.strategies.size(); i++, legend += 22) {
         const std::string color = strategy_color(i);

@@ -5,11 +5,12 @@
 
 namespace opal {
 
-std::string strategy_color(size_t place);        // of the summary's strategies, as CSS
-std::string html_text(const std::string &plain); // with &, <, > and quotes escaped
+std::string strategy_color(size_t index);        // CSS colour of the summary's strategy `index`
+std::string html_text(const std::string &plain); // escapes &, <, > and quotes
 
-// relMSE against seconds, both logarithmic; a line a strategy, a point with its interval for each spp.
+// relMSE against seconds on logarithmic axes: one line for each strategy, one point with its interval for each spp.
 std::string convergence_plot(const SweepSummary &summary);
-std::string svg_file(std::string svg); // such a text as a file of its own
+// Makes a stand-alone SVG file of an SVG element for a page.
+std::string svg_file(std::string svg);
 
 } // namespace opal

@@ -8,17 +8,18 @@
 
 namespace opal {
 
-Measured::Measured(const Device &device, const Candidate &candidate, const Sources &sources, Clock clock)
+CompiledStrategy::CompiledStrategy(const Device &device, const Candidate &candidate, const Sources &sources,
+                                   Clock clock)
     : device_(device), candidate_(candidate), sources_(sources), clock_(clock) {
     compile(candidate.scene.spp);
 }
 
-int Measured::lanes() const {
+int CompiledStrategy::lanes() const {
     const Strategy &s = candidate_.scene.strategy;
     return lanes_for(device_.info, s.lanes, s.math);
 }
 
-void Measured::compile(unsigned spp) {
+void CompiledStrategy::compile(unsigned spp) {
     SceneDescription scene = candidate_.scene;
     scene.spp = compiled_spp_ = spp;
     renderer_.reset();
@@ -29,7 +30,7 @@ void Measured::compile(unsigned spp) {
     renderer_ = std::make_unique<Renderer>(device_, *flat_, options);
 }
 
-Measured::Rendered Measured::render(unsigned spp, unsigned seed, unsigned first) {
+CompiledStrategy::RenderResult CompiledStrategy::render(unsigned spp, unsigned seed, unsigned first) {
     if (candidate_.scene.strategy[AXIS_sampler] == CHOICE_sampler_stratified && spp != compiled_spp_)
         compile(spp);
     renderer_->restart(seed, first);
@@ -38,12 +39,16 @@ Measured::Rendered Measured::render(unsigned spp, unsigned seed, unsigned first)
         throw Interrupted{};
     const double cpu_seconds =
         double(std::clock() - before) / CLOCKS_PER_SEC / std::max(1u, device_.info.compute_units);
-    Rendered rendered{renderer_->film(), {}, clock_ == Clock::cpu ? cpu_seconds : renderer_->kernel_seconds()};
+    RenderResult rendered{renderer_->film(), {}, clock_ == Clock::cpu ? cpu_seconds : renderer_->kernel_seconds()};
     rendered.image = image_of(rendered.film, false);
     return rendered;
 }
 
 namespace {
+
+// The pilot's spp: its first number, the largest, and the largest factor from one try to the next.
+constexpr unsigned first_spp = 8, max_spp = 1u << 16;
+constexpr double max_growth = 8;
 
 double median_of(std::vector<double> values) {
     const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
@@ -53,14 +58,14 @@ double median_of(std::vector<double> values) {
 
 } // namespace
 
-Pilot run_pilot(Measured &measured, unsigned seed, double seconds) {
-    unsigned spp = 8;
-    Measured::Rendered r = measured.render(spp, seed, pilot_first);
-    while (r.seconds < seconds / 2 && spp < 1u << 16) {
-        spp = unsigned(std::clamp(seconds / std::fmax(r.seconds, 1e-9) * spp, 2.0 * spp, 8.0 * spp));
-        r = measured.render(spp, seed, pilot_first);
+Pilot run_pilot(CompiledStrategy &strategy, unsigned seed, double seconds) {
+    unsigned spp = first_spp;
+    CompiledStrategy::RenderResult r = strategy.render(spp, seed, first_pilot_sample);
+    while (r.seconds < seconds / 2 && spp < max_spp) {
+        spp = unsigned(std::clamp(seconds / std::fmax(r.seconds, 1e-9) * spp, 2.0 * spp, max_growth * spp));
+        r = strategy.render(spp, seed, first_pilot_sample);
     }
-    Pilot pilot{spp, r.seconds / spp, {}, {}, measured.takes_both()};
+    Pilot pilot{spp, r.seconds / spp, {}, {}, strategy.uses_mis()};
     for (size_t p = 0; p < r.film.sum.size(); p++) {
         const double n = std::fmax(2, r.film.count[p]), sum = luminance(r.film.sum[p]);
         pilot.mean.push_back(sum / n);
@@ -78,24 +83,24 @@ std::vector<double> pilot_costs(const std::vector<Pilot> &pilots) {
         for (const Pilot &pilot : pilots)
             means.push_back(pilot.mean[p]);
         median[p] = median_of(means);
-        floor += 0.01 * median[p] / double(pixels);
+        floor += 0.01 * median[p] / double(pixels); // 1 % of the mean, as relMSE has it (image/metrics.h)
     }
     std::vector<double> variances;
     double least_mis = INFINITY;
     for (const Pilot &pilot : pilots) {
-        double own = 0, apart = 0;
+        double variance = 0, distance = 0;
         for (size_t p = 0; p < pixels; p++) {
             const double scale = median[p] * median[p] + floor * floor, d = pilot.mean[p] - median[p];
-            own += scale > 0 ? pilot.variance[p] / scale : 0;
-            apart += scale > 0 ? pilot.spp * d * d / scale : 0;
+            variance += scale > 0 ? pilot.variance[p] / scale : 0;
+            distance += scale > 0 ? pilot.spp * d * d / scale : 0;
         }
-        variances.push_back(std::fmax(own, apart) / double(pixels));
+        variances.push_back(std::fmax(variance, distance) / double(pixels));
         if (pilot.mis)
-            least_mis = std::fmin(least_mis, own / double(pixels));
+            least_mis = std::fmin(least_mis, variance / double(pixels));
     }
     std::vector<double> costs;
     for (size_t i = 0; i < pilots.size(); i++) {
-        const double least = pilots[i].mis || !std::isfinite(least_mis) ? 0 : least_mis - 0.5;
+        const double least = pilots[i].mis || !std::isfinite(least_mis) ? 0 : least_mis - (1 - 0.5);
         costs.push_back(std::fmax(variances[i], least) * pilots[i].seconds_a_sample);
     }
     return costs;

@@ -1,4 +1,4 @@
-// Renders what a sweep needs.
+// The measurements of a sweep: timed renders of one strategy, and pilots.
 #pragma once
 
 #include "render/renderer.h"
@@ -9,26 +9,28 @@
 
 namespace opal {
 
-// What a second is. kernel: of the device's own profile. cpu: of this process on all cores, divided by the device's
-// compute units: what the kernels would take on a machine of their own, steady where others work, too; of a CPU device.
+// The clock of a sweep's seconds. kernel: the device's own profile. cpu, for CPU devices: CPU time of this process
+// divided by the device's compute units, an estimate of the kernel time on an idle machine that stays steady on a busy
+// one.
 enum class Clock { kernel, cpu };
 
 // One strategy, compiled for a device.
-class Measured {
+class CompiledStrategy {
 public:
-    Measured(const Device &device, const Candidate &candidate, const Sources &sources, Clock clock = Clock::kernel);
+    CompiledStrategy(const Device &device, const Candidate &candidate, const Sources &sources,
+                     Clock clock = Clock::kernel);
 
-    struct Rendered {
+    struct RenderResult {
         Film film;
         Image image;
         double seconds = 0;
     };
-    // Samples [first, first + spp) of `seed`. Throws Interrupted.
-    Rendered render(unsigned spp, unsigned seed, unsigned first = 0);
+    // Renders samples [first, first + spp) of `seed`. Throws Interrupted.
+    RenderResult render(unsigned spp, unsigned seed, unsigned first = 0);
 
     double compile_seconds() const { return renderer_->compile_seconds(); }
     int lanes() const;
-    bool takes_both() const { return candidate_.scene.strategy[AXIS_lighting] == CHOICE_lighting_mis; }
+    bool uses_mis() const { return candidate_.scene.strategy[AXIS_lighting] == CHOICE_lighting_mis; }
 
 private:
     void compile(unsigned spp);
@@ -36,30 +38,33 @@ private:
     const Candidate &candidate_;
     const Sources &sources_;
     Clock clock_;
-    unsigned compiled_spp_ = 0; // of stratified samples: their strata belong to one number of samples
+    unsigned compiled_spp_ = 0; // for the stratified sampler, whose strata depend on the number of samples
     std::unique_ptr<FlatScene> flat_;
     std::unique_ptr<Renderer> renderer_;
 };
 
-struct Interrupted {}; // by Ctrl-C
+struct Interrupted {}; // thrown after Ctrl-C
 
-// Sample indices of what is not a replicate: disjoint from those, and from each other.
-constexpr unsigned pilot_first = 1u << 30, reference_first_a = 2u << 30, reference_first_b = 3u << 30;
+// First sample indices of pilots and of the reference's two halves. Replicates begin at 0: no sample is used twice.
+constexpr unsigned first_pilot_sample = 1u << 30, first_reference_sample_a = 2u << 30,
+                   first_reference_sample_b = 3u << 30;
 
+// A short render whose samples estimate the cost of a strategy and are no part of any result.
 struct Pilot {
     unsigned spp = 0;
-    double seconds_a_sample = 0;        // of each pixel
-    std::vector<double> mean, variance; // of each pixel's luminance; the variance is of one sample
-    bool mis = false;                   // takes both kinds of sample
+    double seconds_a_sample = 0;        // for one sample of each pixel
+    std::vector<double> mean, variance; // of a sample's luminance, for each pixel
+    bool mis = false;                   // the strategy uses multiple importance sampling
 };
-// A short render: about `seconds` of kernel time. Its samples are for deciding, and no part of any result.
-Pilot run_pilot(Measured &measured, unsigned seed, double seconds);
+// Renders a pilot of about `seconds` by the strategy's clock.
+Pilot run_pilot(CompiledStrategy &strategy, unsigned seed, double seconds);
 
-// For each pilot the seconds to relMSE 1: mean over the pixels of the relative variance of one sample, times its
-// seconds. Relative to the median of all pilots, pixel by pixel. A strategy that has not yet met a small light sees no
-// variance, but is far from that median: the larger of both counts. One way of sampling alone that seems far better
-// than MIS has not met its rare bright samples: the balance heuristic's variance exceeds no single way's by more than
-// (1 - 1/2) mean^2 (Veach 1997, theorem 9.2).
+// Estimates each strategy's seconds to relMSE 1: the relative variance of one sample, averaged over the pixels, times
+// the seconds for a sample of each pixel. Two corrections guard against pilots that have missed rare bright samples:
+// - Variances are relative to the median of all pilots' means in each pixel. Where a pilot's mean is farther from that
+//   median than its variance explains, the squared distance counts instead.
+// - A strategy without MIS cannot be much better than with it: the balance heuristic's variance exceeds that of
+//   any single technique by at most (1 - 1/2) mean^2 (Veach 1997, theorem 9.2), which gives a lower bound.
 std::vector<double> pilot_costs(const std::vector<Pilot> &pilots);
 
 } // namespace opal

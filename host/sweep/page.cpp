@@ -13,7 +13,7 @@ namespace opal {
 
 namespace {
 
-const char *const head = R"(<!DOCTYPE html>
+const char *const page_head = R"(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
 <style>
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 1000px; margin: 2em auto; padding: 0 1em; color: #222; background: #fff }
@@ -32,7 +32,7 @@ figcaption { font-size: .9em } code, pre { background: #f4f4f4; padding: .1em .3
 </style>
 )";
 
-const char *const tail = R"(<script>
+const char *const page_tail = R"(<script>
 const lenses = [...document.querySelectorAll('.lens')];
 const zoom = (x, y, scale) => lenses.forEach(lens => {
     lens.firstChild.style.transformOrigin = `${100 * x}% ${100 * y}%`;
@@ -50,7 +50,7 @@ for (const lens of lenses) {
 </body></html>
 )";
 
-constexpr double levels[] = {0.1, 0.01, 0.001}; // relMSE
+constexpr double rel_mse_levels[] = {0.1, 0.01, 0.001}; // the columns "time to relMSE"
 
 bool bounded(const stats::Interval &i) { return std::isfinite(i.high) && i.low > 0; }
 
@@ -60,21 +60,22 @@ std::string seconds_text(double s) {
                       : fmt::format("{:.1f} h", s / 3600);
 }
 
-// "1.2" above "1.1 to 1.3"
-template <class Format> std::string cell(const stats::Interval &i, Format format, bool known) {
+// A table cell with the estimate and, in small print, the interval if it is known.
+template <class Format> std::string interval_cell(const stats::Interval &i, Format format, bool known) {
     return "<td>" + format(i.estimate) +
            (known ? "<small>" + format(i.low) + " to " + format(i.high) + "</small>" : "") + "</td>";
 }
 
-std::string number(double x) {
+std::string number_text(double x) {
     return fmt::format("{:.{}f}", x, x < 0.1 ? 4 : x < 1 ? 3 : x < 10 ? 2 : x < 100 ? 1 : 0);
 }
 
+// The level of each strategy's test of bias, which gives a level of 1 % over all strategies (Bonferroni).
 double bias_level(const SweepSummary &summary) { return 0.01 / double(summary.strategies.size()); }
 
-std::string table(const SweepSummary &summary) {
+std::string strategy_table(const SweepSummary &summary) {
     std::string html = "<table><tr><th>strategy</th>";
-    for (double level : levels)
+    for (double level : rel_mse_levels)
         html += fmt::format("<th>time to<br>relMSE {:g} %</th>", 100 * level);
     html += "<th>time relative<br>to the best</th><th>efficiency<br>1 / (MSE &times; s)<br>relative to the "
             "first</th><th>slope</th><th>bias</th><th>compile</th></tr>\n";
@@ -82,15 +83,16 @@ std::string table(const SweepSummary &summary) {
         const StrategySummary &s = summary.strategies[i];
         html += fmt::format("<tr><td><span class='dot' style='background:{}'></span>{}</td>", strategy_color(i),
                             html_text(s.record->label));
-        for (double level : levels)
-            html += cell(s.time_to(level), seconds_text, bounded(s.time_to(level)));
+        for (double level : rel_mse_levels)
+            html += interval_cell(s.time_to(level), seconds_text, bounded(s.time_to(level)));
         const bool best = i == summary.best, first = i == 0;
-        html += best ? "<td>the best</td>"
-                     : cell(
-                           s.slower, [](double x) { return number(x) + "&times;"; }, bounded(s.slower));
-        html += first ? "<td>1</td>" : cell(s.efficiency, number, bounded(s.efficiency));
+        html +=
+            best ? "<td>the best</td>"
+                 : interval_cell(
+                       s.relative_time, [](double x) { return number_text(x) + "&times;"; }, bounded(s.relative_time));
+        html += first ? "<td>1</td>" : interval_cell(s.efficiency, number_text, bounded(s.efficiency));
         html += std::isfinite(s.slope.estimate)
-                    ? cell(
+                    ? interval_cell(
                           s.slope, [](double x) { return fmt::format("{:.3f}", x); }, std::isfinite(s.slope.high))
                     : "<td>&ndash;</td>";
         html += s.bias_p < bias_level(summary)
@@ -101,24 +103,24 @@ std::string table(const SweepSummary &summary) {
     return html + "</table>\n";
 }
 
-std::string embedded(const std::filesystem::path &png, const std::string &what) {
+std::string embedded_png(const std::filesystem::path &png, const std::string &what) {
     return fmt::format("<div class='lens'><img alt=\"{}\" title=\"{}\" src=\"data:image/png;base64,{}\"></div>", what,
                        what, base64(read_file(png)));
 }
 
-std::string pictures(const SweepSummary &summary, const std::filesystem::path &folder) {
-    std::string html = "<div class='grid'>\n<figure>" + embedded(folder / "reference.png", "reference") +
+std::string equal_time_images(const SweepSummary &summary, const std::filesystem::path &folder) {
+    std::string html = "<div class='grid'>\n<figure>" + embedded_png(folder / "reference.png", "reference") +
                        "<figcaption><b>the reference</b>, what all of them tend to</figcaption></figure>\n";
     for (const StrategySummary &s : summary.strategies) {
-        const Shot &shot = s.record->shot;
-        if (shot.file.empty())
+        const EqualTimeImage &image = s.record->shot;
+        if (image.file.empty())
             continue;
         const std::string label = html_text(s.record->label);
-        html += "<figure>" + embedded(folder / (shot.file + ".png"), label) +
-                embedded(folder / (shot.file + "_error.png"), label + ": error");
+        html += "<figure>" + embedded_png(folder / (image.file + ".png"), label) +
+                embedded_png(folder / (image.file + "_error.png"), label + ": error");
         html +=
             fmt::format("<figcaption><b>{}</b>: {} samples per pixel in {:.3g} s, relMSE {} %</figcaption></figure>\n",
-                        label, shot.spp, shot.seconds, number(100 * shot.rel_mse));
+                        label, image.spp, image.seconds, number_text(100 * image.rel_mse));
     }
     return html + "</div>\n";
 }
@@ -130,7 +132,7 @@ std::string devices_of(const SweepRecord &r) {
     return text;
 }
 
-std::string how_measured(const SweepRecord &r) {
+std::string measurement_text(const SweepRecord &r) {
     const ReferenceRecord &ref = r.reference;
     std::string html = fmt::format(
         "<p>{}, {} &times; {} pixels, on {}, by opal {}. Seconds are {}; compiling is not among them. "
@@ -168,13 +170,13 @@ std::string how_measured(const SweepRecord &r) {
 
 unsigned long long invalid_samples(const StrategyRecord &s) {
     unsigned long long count = 0;
-    for (const Point &p : s.points)
+    for (const SweepPoint &p : s.points)
         for (const Replicate &r : p.replicates)
             count += r.invalid;
     return count;
 }
 
-std::string list_of(const std::vector<std::string> &sentences) {
+std::string verdict_list(const std::vector<std::string> &sentences) {
     std::string html = "<ul class='verdict'>\n";
     for (const std::string &sentence : sentences)
         html += "<li>" + html_text(sentence) + "</li>\n";
@@ -185,7 +187,7 @@ std::string list_of(const std::vector<std::string> &sentences) {
 
 std::vector<std::string> verdict(const SweepRecord &record, const SweepSummary &summary) {
     const StrategySummary &best = summary.strategies[summary.best];
-    constexpr double level = 0.01;
+    constexpr double level = 0.01; // relMSE
     const double seconds = best.time_to(level).estimate;
     std::string where = std::filesystem::path(record.scene).filename().string();
     for (const DeviceRecord &d : record.devices)
@@ -205,11 +207,11 @@ std::vector<std::string> verdict(const SweepRecord &record, const SweepSummary &
     for (const StrategySummary *s : others)
         sentences.push_back(fmt::format(
             fmt::runtime(
-                bounded(s->slower) && !s->slower.contains(1)
+                bounded(s->relative_time) && !s->relative_time.contains(1)
                     ? "{} needs {}, {} times longer (95 % interval {} to {})."
                     : "{} needs {}; that is not significantly different ({} times longer, 95 % interval {} to {})."),
-            s->record->label, seconds_text(s->time_to(level).estimate), number(s->slower.estimate),
-            number(s->slower.low), number(s->slower.high)));
+            s->record->label, seconds_text(s->time_to(level).estimate), number_text(s->relative_time.estimate),
+            number_text(s->relative_time.low), number_text(s->relative_time.high)));
     for (const StrategySummary &s : summary.strategies)
         if (s.bias_p < bias_level(summary))
             sentences.push_back(
@@ -224,25 +226,25 @@ std::vector<std::string> verdict(const SweepRecord &record, const SweepSummary &
 
 std::string html_page(const SweepRecord &record, const SweepSummary &summary, const std::filesystem::path &folder) {
     const std::string name = html_text(std::filesystem::path(record.scene).stem().string());
-    std::string html = head;
+    std::string html = page_head;
     html += "<title>Opal sweep of " + name + "</title></head>\n<body>\n<h1>" + name +
             ": what each strategy costs and buys</h1>\n";
-    html += list_of(verdict(record, summary));
+    html += verdict_list(verdict(record, summary));
     html += "<h2>Error against time</h2>\n<p>Both axes are logarithmic; bars are 95 % intervals. Lower left is better. "
             "Point at a mark for its figures.</p>\n";
     html += convergence_plot(summary);
     html += "<h2>Time to an error</h2>\n<p>Seconds, extrapolated where no render took as long. Small print: 95 % "
             "intervals. relMSE asks the same of all pixels; MSE, in the "
             "column of efficiencies, is decided by the brightest, such as the edges of lamps.</p>\n" +
-            table(summary);
+            strategy_table(summary);
     html += "<h2>What each gives in the same time</h2>\n<p>Under each image its error, |image &minus; reference| / "
             "reference: dark blue is none, yellow is as "
             "large as the pixel itself. Point at one to see the same place of all four times as large; click to "
             "enlarge.</p>\n";
-    html += pictures(summary, folder);
-    html += "<h2>How it was measured</h2>\n" + how_measured(record);
+    html += equal_time_images(summary, folder);
+    html += "<h2>How it was measured</h2>\n" + measurement_text(record);
     html += "<h2>To repeat it</h2>\n<pre>" + html_text(record.command) + "</pre>\n";
-    return html + tail;
+    return html + page_tail;
 }
 
 } // namespace opal

@@ -11,8 +11,8 @@ namespace opal {
 
 // The keys of sweep.json are the members' names.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Replicate, seed, seconds, mse, rel_mse, mean_luminance, invalid)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Point, spp, replicates)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Shot, spp, seconds, rel_mse, file)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SweepPoint, spp, replicates)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EqualTimeImage, spp, seconds, rel_mse, file)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DeviceRecord, index, name, driver)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StrategyRecord, name, label, device, lanes, independent, compile_seconds, pilot_cost,
                                    pilot_seconds_a_sample, points, shot)
@@ -47,7 +47,7 @@ SweepRecord resume(const std::filesystem::path &folder, const SweepRecord &fresh
     if (!std::filesystem::exists(file))
         return fresh;
     SweepRecord kept = load_record(folder);
-    const nlohmann::json was = kept, is = nlohmann::json::parse(dump(fresh)); // as it would have been kept
+    const nlohmann::json was = kept, is = nlohmann::json::parse(dump(fresh)); // as load_record would return it
     for (const char *key :
          {"version", "scene_hash", "integrator", "devices", "clock", "width", "height", "reference_file"})
         if (was[key] != is[key])

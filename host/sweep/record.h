@@ -1,4 +1,4 @@
-// What a sweep has measured: kept in sweep.json, from which a later run goes on.
+// The record of a sweep: all its measurements, kept in sweep.json, so that a later run continues it.
 #pragma once
 
 #include <filesystem>
@@ -13,68 +13,71 @@ namespace opal {
 struct Replicate {
     unsigned seed = 0;
     double seconds = 0;          // by the record's clock
-    double mse = 0, rel_mse = 0; // against the reference, its variance subtracted; may then come out below 0
+    double mse = 0, rel_mse = 0; // unbiased estimates against the reference, possibly negative
     double mean_luminance = 0;
-    unsigned long long invalid = 0; // samples, NaN or infinite, left out
+    unsigned long long invalid = 0; // number of samples left out as NaN or infinite
 };
 
-struct Point {
+// All replicates of one strategy at one number of samples per pixel.
+struct SweepPoint {
     unsigned spp = 0;
     std::vector<Replicate> replicates;
 };
 
-struct Shot { // the picture at equal time
+// A strategy's image at the render time that all strategies get.
+struct EqualTimeImage {
     unsigned spp = 0;
     double seconds = 0, rel_mse = 0;
-    std::string file; // without ending: FILE.exr, FILE.png, FILE_error.png lie in the folder
+    std::string file; // stem of FILE.exr, FILE.png and FILE_error.png in the folder
 };
 
 struct DeviceRecord {
-    int index = 0; // of `opal devices`
+    int index = 0; // in `opal devices`
     std::string name, driver;
 };
 
 struct StrategyRecord {
     std::string name, label;
-    size_t device = 0; // place in the record's list
+    size_t device = 0; // index in SweepRecord::devices
     int lanes = 0;
-    bool independent = true; // samples: MSE falls as 1/spp
+    bool independent = true; // the samples are, so that MSE falls as 1/spp
     double compile_seconds = 0;
-    double pilot_cost = 0, pilot_seconds_a_sample = 0; // variance of a pixel's sample, times its seconds, averaged
-    std::vector<Point> points;
-    Shot shot;
+    double pilot_cost = 0, pilot_seconds_a_sample = 0; // as in pilot_costs and Pilot
+    std::vector<SweepPoint> points;
+    EqualTimeImage shot;
 };
 
 struct ReferenceRecord {
-    std::string made_by; // a strategy's name, or the file
-    unsigned spp = 0;    // 0: a file's, unknown
+    std::string made_by; // a strategy's name, or the file that was given
+    unsigned spp = 0;    // 0: unknown, for a given file
     double seconds = 0;
     double mean_luminance = 0, stderr_luminance = 0;
     bool variance_known = false;
-    double mean_square = 0; // over pixels and R, G, B: what an MSE is measured by
+    double mean_square = 0; // over pixels and R, G, B, the scale of an MSE
 };
 
 struct SweepRecord {
-    // What may not change between runs into one folder.
-    std::string version, scene, scene_hash, reference_file, clock; // kernel or cpu
+    // A run that continues a sweep must agree in these.
+    std::string version, scene, scene_hash, reference_file, clock; // clock: kernel or cpu
     std::vector<DeviceRecord> devices;
     int width = 0, height = 0;
-    // What may.
+    // In these it may differ.
     std::string command, integrator;
     unsigned replicates = 0;
-    std::vector<unsigned> spp, left_out_spp; // left out for the budget
-    double budget = 0;
+    std::vector<unsigned> spp, left_out_spp; // measured, and left out for the budget; ascending
+    double budget = 0;                       // seconds; 0: none
     ReferenceRecord reference;
     std::vector<StrategyRecord> strategies;
 
-    StrategyRecord &strategy(const std::string &name, const std::string &label); // added where it is not there
+    StrategyRecord &strategy(const std::string &name, const std::string &label); // appended if it is new
 };
 
+// Reads sweep.json in the folder. Throws Error if it is no record.
 SweepRecord load_record(const std::filesystem::path &folder);
-// The record in the folder, or `fresh` where there is none. Error naming what differs where the folder holds another
-// sweep.
+// The record in the folder with the options of `fresh`, or `fresh` if there is none. Throws Error with the difference
+// if the folder holds another sweep.
 SweepRecord resume(const std::filesystem::path &folder, const SweepRecord &fresh);
-// sweep.json, written safely; with the summary of a finished sweep, which a later run does not read.
+// Writes sweep.json safely. A finished sweep adds its summary, which a later run does not read.
 void save(const SweepRecord &record, const std::filesystem::path &folder, const nlohmann::json &summary = {});
 
 } // namespace opal

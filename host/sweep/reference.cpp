@@ -42,7 +42,7 @@ double mean_square(const Image &image) {
     return sum / (double(channels.size()) * image.width * image.height);
 }
 
-Image reference_of(const Image &a, const Image &b) {
+Image reference_from_halves(const Image &a, const Image &b) {
     Image reference{a.width, a.height, {}, {}};
     for (const char *channel : channels) {
         const std::vector<float> &va = a.get(channel).values, &vb = b.get(channel).values;
@@ -58,9 +58,9 @@ Image reference_of(const Image &a, const Image &b) {
     return reference;
 }
 
-ErrorAgainst error_against(const Image &reference, const Image &image) {
+ImageError error_against(const Image &reference, const Image &image) {
     const Metrics metrics = compare_images(image, reference);
-    ErrorAgainst error{metrics.mse, metrics.rel_mse};
+    ImageError error{metrics.mse, metrics.rel_mse};
     double variance = 0, relative = 0, count = 0;
     for (const char *channel : channels) {
         const Layer *layer = reference.find(std::string("variance.") + channel);

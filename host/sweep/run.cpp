@@ -14,71 +14,75 @@ namespace opal {
 
 namespace {
 
-constexpr double pilot_seconds = 0.5, pilots_share = 0.1; // of the budget, all pilots together
-constexpr unsigned reference_factor = 8;
+constexpr double max_pilot_seconds = 0.5; // for one pilot
+constexpr double pilots_share = 0.1;      // of the budget, for all pilots together
+constexpr unsigned reference_factor = 8;  // the reference's spp over the largest spp
 
-class Sweep {
+class SweepRunner {
 public:
-    Sweep(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates, SweepRecord &record)
+    SweepRunner(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates,
+                SweepRecord &record)
         : plan_(plan), device_(device), candidates_(candidates), record_(record) {}
 
     void measure() {
-        pilots();
+        run_pilots();
         best_ = &*std::min_element(candidates_.begin(), candidates_.end(), [&](const Candidate &a, const Candidate &b) {
-            return of(a).pilot_cost < of(b).pilot_cost;
+            return record_of(a).pilot_cost < record_of(b).pilot_cost;
         });
         fit_budget();
         make_reference();
         for (unsigned round = 1; round <= record_.replicates; round++)
-            replicate(round);
+            run_round(round);
     }
 
-    void pictures() {
+    void render_equal_time_images() {
         read_reference();
         for (const Candidate &c : candidates_)
-            picture(c);
+            render_equal_time_image(c);
     }
 
 private:
-    StrategyRecord &of(const Candidate &c) { return record_.strategy(c.name, c.label); }
-    void keep() { save(record_, plan_.folder); }
-    Measured compiled(const Candidate &c) { return Measured(device_, c, *plan_.sources, plan_.clock); }
-    double budget() const { return record_.budget / double(record_.devices.size()); }
+    StrategyRecord &record_of(const Candidate &c) { return record_.strategy(c.name, c.label); }
+    void save_record() { save(record_, plan_.folder); }
+    CompiledStrategy compile(const Candidate &c) { return CompiledStrategy(device_, c, *plan_.sources, plan_.clock); }
+    // The part of the budget for this device.
+    double device_budget() const { return record_.budget / double(record_.devices.size()); }
 
-    void pilots() {
+    void run_pilots() {
         if (std::all_of(candidates_.begin(), candidates_.end(),
-                        [&](const Candidate &c) { return of(c).pilot_cost > 0; }))
+                        [&](const Candidate &c) { return record_of(c).pilot_cost > 0; }))
             return;
-        const double share = record_.budget > 0 ? pilots_share * budget() / double(candidates_.size()) : pilot_seconds;
+        const double share =
+            record_.budget > 0 ? pilots_share * device_budget() / double(candidates_.size()) : max_pilot_seconds;
         std::vector<Pilot> all;
         for (const Candidate &c : candidates_) {
-            StrategyRecord &s = of(c);
-            Measured measured = compiled(c);
-            all.push_back(run_pilot(measured, plan_.seed, std::fmin(pilot_seconds, share)));
+            StrategyRecord &s = record_of(c);
+            CompiledStrategy strategy = compile(c);
+            all.push_back(run_pilot(strategy, plan_.seed, std::fmin(max_pilot_seconds, share)));
             s.independent = c.scene.strategy[AXIS_sampler] == CHOICE_sampler_independent;
-            s.compile_seconds = measured.compile_seconds();
-            s.lanes = measured.lanes();
+            s.compile_seconds = strategy.compile_seconds();
+            s.lanes = strategy.lanes();
             s.pilot_seconds_a_sample = all.back().seconds_a_sample;
         }
         const std::vector<double> costs = pilot_costs(all);
         for (size_t i = 0; i < costs.size(); i++) {
-            StrategyRecord &s = of(candidates_[i]);
-            s.pilot_cost = std::fmax(costs[i], 1e-30); // 0 would mean that there was none
+            StrategyRecord &s = record_of(candidates_[i]);
+            s.pilot_cost = std::fmax(costs[i], 1e-30); // 0 means that there is no pilot yet
             info(fmt::format("pilot   {}: {:.3g} ms a sample of each pixel, about {:.3g} s to relMSE 1 %", s.label,
                              1e3 * s.pilot_seconds_a_sample, s.pilot_cost / 0.01));
         }
-        keep();
+        save_record();
     }
 
-    const Point *found(const StrategyRecord &s, unsigned spp) const {
-        for (const Point &p : s.points)
+    const SweepPoint *find_point(const StrategyRecord &s, unsigned spp) const {
+        for (const SweepPoint &p : s.points)
             if (p.spp == spp)
                 return &p;
         return nullptr;
     }
 
-    unsigned missing(const StrategyRecord &s, unsigned spp) const {
-        const Point *p = found(s, spp);
+    unsigned missing_replicates(const StrategyRecord &s, unsigned spp) const {
+        const SweepPoint *p = find_point(s, spp);
         return record_.replicates - unsigned(p ? std::min<size_t>(p->replicates.size(), record_.replicates) : 0);
     }
 
@@ -86,21 +90,21 @@ private:
         return plan_.reference_spp ? plan_.reference_spp : reference_factor * record_.spp.back();
     }
 
-    // Kernel seconds of what is still to be measured, by the pilots.
+    // The seconds that the missing measurements will take, by the pilots.
     double seconds_left() {
         double seconds = record_.reference.made_by.empty() && !plan_.reference
-                             ? reference_spp() * of(*best_).pilot_seconds_a_sample
+                             ? reference_spp() * record_of(*best_).pilot_seconds_a_sample
                              : 0;
         for (const Candidate &c : candidates_)
             for (unsigned spp : record_.spp)
-                seconds += missing(of(c), spp) * double(spp) * of(c).pilot_seconds_a_sample;
+                seconds += missing_replicates(record_of(c), spp) * double(spp) * record_of(c).pilot_seconds_a_sample;
         return seconds;
     }
 
-    // Leaves out the largest spp until the rest fits.
+    // Leaves out the largest spp until the rest fits the budget.
     void fit_budget() {
         double seconds = seconds_left();
-        for (; record_.budget > 0 && seconds > budget(); seconds = seconds_left()) {
+        for (; record_.budget > 0 && seconds > device_budget(); seconds = seconds_left()) {
             if (record_.spp.size() == 1)
                 throw Error(fmt::format(
                     "--budget {:g}s: {} samples per pixel alone take about {:.3g} s; give more, or fewer strategies, "
@@ -132,14 +136,14 @@ private:
         } else {
             Candidate candidate = *best_;
             candidate.scene.strategy[AXIS_sampler] = CHOICE_sampler_independent;
-            if (candidate.scene.strategy.math == MathMode::fast) // is measured against the reference
+            if (candidate.scene.strategy.math == MathMode::fast) // fast math is itself measured against the reference
                 candidate.scene.strategy.math = MathMode::precise;
-            Measured measured = compiled(candidate);
+            CompiledStrategy strategy = compile(candidate);
             const unsigned half = (reference_spp() + 1) / 2;
-            const auto a = measured.render(half, plan_.seed, reference_first_a),
-                       b = measured.render(half, plan_.seed, reference_first_b);
+            const auto a = strategy.render(half, plan_.seed, first_reference_sample_a),
+                       b = strategy.render(half, plan_.seed, first_reference_sample_b);
             const FilmStatistics sa = statistics_of(a.film), sb = statistics_of(b.film);
-            reference_ = reference_of(a.image, b.image);
+            reference_ = reference_from_halves(a.image, b.image);
             write_exr(reference_, reference_file());
             r = {best_->name,
                  2 * half,
@@ -152,46 +156,48 @@ private:
         r.mean_square = mean_square(reference_);
         if (!std::filesystem::exists(plan_.folder / "reference.png"))
             write_png(reference_, plan_.folder / "reference.png");
-        keep();
+        save_record();
     }
 
-    // One replicate of each point, where there are fewer.
-    void replicate(unsigned round) {
+    // Renders a replicate of each point that has fewer than `round`.
+    void run_round(unsigned round) {
         double seconds = 0;
         for (size_t i = 0; i < candidates_.size(); i++)
             for (unsigned spp : record_.spp) {
-                std::vector<Replicate> &replicates = point(of(candidates_[i]), spp).replicates;
+                std::vector<Replicate> &replicates = point(record_of(candidates_[i]), spp).replicates;
                 if (replicates.size() >= round)
                     continue;
                 const unsigned seed = plan_.seed + round;
-                const Measured::Rendered r = measured(i).render(spp, seed);
-                const ErrorAgainst error = error_against(reference_, r.image);
+                const CompiledStrategy::RenderResult r = compiled(i).render(spp, seed);
+                const ImageError error = error_against(reference_, r.image);
                 replicates.push_back(
                     {seed, r.seconds, error.mse, error.rel_mse, statistics_of(r.film).mean_luminance, r.film.invalid});
                 seconds += r.seconds;
-                keep();
+                save_record();
             }
         if (seconds > 0)
             info(fmt::format("round   {} of {}: {:.3g} s", round, record_.replicates, seconds));
     }
 
-    Point &point(StrategyRecord &s, unsigned spp) {
-        if (!found(s, spp)) {
+    SweepPoint &point(StrategyRecord &s, unsigned spp) {
+        if (!find_point(s, spp)) {
             s.points.push_back({spp, {}});
-            std::sort(s.points.begin(), s.points.end(), [](const Point &a, const Point &b) { return a.spp < b.spp; });
+            std::sort(s.points.begin(), s.points.end(),
+                      [](const SweepPoint &a, const SweepPoint &b) { return a.spp < b.spp; });
         }
-        return *std::find_if(s.points.begin(), s.points.end(), [&](const Point &p) { return p.spp == spp; });
+        return *std::find_if(s.points.begin(), s.points.end(), [&](const SweepPoint &p) { return p.spp == spp; });
     }
 
-    Measured &measured(size_t candidate) { // compiled where something is missing
-        measured_.resize(candidates_.size());
-        if (!measured_[candidate])
-            measured_[candidate] = std::make_unique<Measured>(compiled(candidates_[candidate]));
-        return *measured_[candidate];
+    // The candidate's compiled strategy, which the first use compiles.
+    CompiledStrategy &compiled(size_t candidate) {
+        compiled_.resize(candidates_.size());
+        if (!compiled_[candidate])
+            compiled_[candidate] = std::make_unique<CompiledStrategy>(compile(candidates_[candidate]));
+        return *compiled_[candidate];
     }
 
-    // All get the kernel time that the fastest strategy takes for the most samples.
-    double picture_seconds() {
+    // The time that every strategy gets: that of the fastest strategy for the most samples.
+    double equal_time_seconds() {
         double seconds = INFINITY;
         for (const StrategyRecord &s : record_.strategies)
             if (!s.points.empty())
@@ -199,23 +205,23 @@ private:
         return seconds;
     }
 
-    void picture(const Candidate &c) {
-        StrategyRecord &s = of(c);
-        const Point &last = s.points.back();
+    void render_equal_time_image(const Candidate &c) {
+        StrategyRecord &s = record_of(c);
+        const SweepPoint &last = s.points.back();
         const unsigned spp =
-            unsigned(std::fmax(1, std::round(last.spp * picture_seconds() / last.replicates[0].seconds)));
+            unsigned(std::fmax(1, std::round(last.spp * equal_time_seconds() / last.replicates[0].seconds)));
         const std::filesystem::path stem =
             plan_.folder / ("equal_time_" + std::to_string(&s - record_.strategies.data() + 1));
         const std::array files = {stem.string() + ".exr", stem.string() + ".png", stem.string() + "_error.png"};
         if (s.shot.spp == spp &&
             std::ranges::all_of(files, [](const std::string &file) { return std::filesystem::exists(file); }))
             return;
-        const Measured::Rendered r = compiled(c).render(spp, plan_.seed + 1);
+        const CompiledStrategy::RenderResult r = compile(c).render(spp, plan_.seed + 1);
         write_exr(r.image, files[0]);
         write_png(r.image, files[1]);
         write_png(error_map(reference_, r.image), files[2]);
         s.shot = {spp, r.seconds, error_against(reference_, r.image).rel_mse, stem.filename().string()};
-        keep();
+        save_record();
     }
 
     const SweepPlan &plan_;
@@ -223,7 +229,7 @@ private:
     const std::vector<Candidate> &candidates_;
     SweepRecord &record_;
     const Candidate *best_ = nullptr;
-    std::vector<std::unique_ptr<Measured>> measured_;
+    std::vector<std::unique_ptr<CompiledStrategy>> compiled_; // by candidate
     Image reference_;
 };
 
@@ -231,12 +237,12 @@ private:
 
 void measure_points(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates,
                     SweepRecord &record) {
-    Sweep(plan, device, candidates, record).measure();
+    SweepRunner(plan, device, candidates, record).measure();
 }
 
-void take_pictures(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates,
-                   SweepRecord &record) {
-    Sweep(plan, device, candidates, record).pictures();
+void render_equal_time_images(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates,
+                              SweepRecord &record) {
+    SweepRunner(plan, device, candidates, record).render_equal_time_images();
 }
 
 } // namespace opal

@@ -12,11 +12,11 @@ TEST_CASE("Every row keeps what it promises, and nothing is NaN or infinite", "[
         WARN("the device has no double precision: nothing to hold single against");
         return;
     }
-    for (const extremes::Row &row : extremes::rows()) {
-        const extremes::Sweep s = sweep(row, device(), {64, 1024, test_seed(71)}, 1);
+    for (const extremes::StressRow &row : extremes::stress_rows()) {
+        const extremes::StressResult s = run_stress(row, device(), {64, 1024, test_seed(71)}, 1);
         INFO(row.name << ": " << extremes::breaking_point(s));
         CHECK(s.kept);
-        for (const extremes::Point &p : s.points) {
+        for (const extremes::StressPoint &p : s.points) {
             INFO("at " << p.value);
             CHECK(p.invalid_single == 0);
             CHECK(p.invalid_oracle == 0);
@@ -26,8 +26,8 @@ TEST_CASE("Every row keeps what it promises, and nothing is NaN or infinite", "[
 
 TEST_CASE("No ray of 1e8 at edges and vertices of closed meshes is lost", "[every_row]") {
     for (const double scale : {1e-4, 1e-2, 1.0, 1e2, 1e4}) {
-        const extremes::How how{64, 1024, test_seed(72) + unsigned(std::log10(scale) + 4)};
+        const extremes::StressSettings settings{64, 1024, test_seed(72) + unsigned(std::log10(scale) + 4)};
         INFO("scale " << scale);
-        CHECK(extremes::lost_at_edges(scale, 20'000'000, device(), how, MathMode::precise) == 0);
+        CHECK(extremes::lost_at_edges(scale, 20'000'000, device(), settings, MathMode::precise) == 0);
     }
 }

@@ -16,9 +16,11 @@ using namespace opal::test;
 
 namespace {
 
-const extremes::Row &row(const std::string &name) { return find_row(extremes::rows(), "row", name); }
+const extremes::StressRow &row(const std::string &name) { return find_row(extremes::stress_rows(), "row", name); }
 
-extremes::How small(const Sources &sources = Sources::embedded()) { return {24, 64, test_seed(70), &sources}; }
+extremes::StressSettings small(const Sources &sources = Sources::embedded()) {
+    return {24, 64, test_seed(70), &sources};
+}
 
 bool doubles() {
     if (!device().info.fp64)
@@ -26,10 +28,10 @@ bool doubles() {
     return device().info.fp64;
 }
 
-void require_kept(const extremes::Sweep &s) {
+void require_kept(const extremes::StressResult &s) {
     INFO(s.row->name << ": " << extremes::breaking_point(s));
     CHECK(s.kept);
-    for (const extremes::Point &p : s.points) {
+    for (const extremes::StressPoint &p : s.points) {
         INFO("at " << p.value);
         CHECK(p.invalid_single == 0);
         CHECK(p.invalid_oracle == 0);
@@ -43,16 +45,16 @@ TEST_CASE("Single precision keeps what is promised at the ends of each range", "
         return;
     for (const char *name :
          {"scale", "distance", "light-size", "alpha", "phong", "edges", "numbers", "samplers", "depth", "height"})
-        require_kept(sweep(row(name), device(), small(), 100));
+        require_kept(run_stress(row(name), device(), small(), 100));
 }
 
 TEST_CASE("A million samples of 0.1 are 0.1 each", "[quick]") {
     if (!doubles())
         return;
-    extremes::Row samples = row("samples");
+    extremes::StressRow samples = row("samples");
     samples.values = {1, 1 << 20};
     samples.promised_to = 1 << 20;
-    require_kept(sweep(samples, device(), small(), 1));
+    require_kept(run_stress(samples, device(), small(), 1));
 }
 
 TEST_CASE("What does not survive the extremes is seen by a row", "[quick]") {
@@ -74,13 +76,14 @@ TEST_CASE("What does not survive the extremes is seen by a row", "[quick]") {
              {{"a plain sum of the samples", "film/film.cl", "r.lo = lo - (r.hi - hi);", "r.lo = 0;"},
               "samples",
               1 << 20}}) {
-        extremes::Row one = row(c.row);
+        extremes::StressRow one = row(c.row);
         one.values = {one.start, c.value};
         one.promised_from = std::min(one.start, c.value);
         one.promised_to = std::max(one.start, c.value);
         const Sources wrong = mutated(Sources::embedded(), c.mutant);
         INFO(c.mutant.name);
-        const extremes::Sweep right = sweep(one, device(), small(), 1), mutant = sweep(one, device(), small(wrong), 1);
+        const extremes::StressResult right = run_stress(one, device(), small(), 1),
+                                     mutant = run_stress(one, device(), small(wrong), 1);
         INFO(extremes::breaking_point(right));
         CHECK(right.kept);
         CHECK_FALSE(mutant.kept);

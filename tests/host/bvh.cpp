@@ -15,7 +15,7 @@ using namespace opal;
 
 namespace {
 
-constexpr double INF = INFINITY;
+constexpr double infinity = INFINITY;
 
 struct Random {
     std::mt19937 bits;
@@ -93,7 +93,7 @@ TriangleSoup nasty(int which) {
     }
     return soup;
 }
-constexpr int NASTY_COUNT = 7;
+constexpr int nasty_count = 7;
 
 // Long, thin and askew: boxes that are mostly empty.
 TriangleSoup needles(unsigned count, unsigned seed) {
@@ -128,18 +128,18 @@ struct Ray {
 
 Vec3 to_vec(const std::array<float, 3> &p) { return {p[0], p[1], p[2]}; }
 
-// Moeller and Trumbore 1997, in double. INF where there is no hit.
+// Moeller and Trumbore 1997, in double. infinity where there is no hit.
 double hit_triangle(const Ray &ray, Vec3 a, Vec3 b, Vec3 c) {
     const Vec3 ab = b - a, ac = c - a, p = cross(ray.direction, ac), s = ray.origin - a, q = cross(s, ab);
     const double determinant = dot(ab, p);
     if (determinant == 0)
-        return INF;
+        return infinity;
     const double u = dot(s, p) / determinant, v = dot(ray.direction, q) / determinant, t = dot(ac, q) / determinant;
-    return u >= 0 && v >= 0 && u + v <= 1 && t > 0 ? t : INF;
+    return u >= 0 && v >= 0 && u + v <= 1 && t > 0 ? t : infinity;
 }
 
 double hit_brute_force(const Ray &ray, const TriangleSoup &soup) {
-    double nearest = INF;
+    double nearest = infinity;
     for (const auto &[a, b, c] : soup.corners)
         nearest = std::min(
             nearest, hit_triangle(ray, to_vec(soup.vertices[a]), to_vec(soup.vertices[b]), to_vec(soup.vertices[c])));
@@ -165,7 +165,7 @@ bool meets_box(const Ray &ray, const BvhNode &node, int child, double nearest) {
 // The nearest hit by way of the tree.
 double hit_tree(const Ray &ray, const Bvh &bvh) {
     std::vector<uint> stack{0};
-    double nearest = INF;
+    double nearest = infinity;
     while (!stack.empty()) {
         const uint at = stack.back();
         stack.pop_back();
@@ -206,7 +206,7 @@ void check_against_brute_force(const TriangleSoup &soup, int rays) {
         const double found = hit_tree(ray, bvh);
         if (found != expected)
             FAIL("ray " << i << ": " << found << ", not " << expected);
-        hits += expected < INF;
+        hits += expected < infinity;
     }
     if (!soup.corners.empty())
         CHECK(hits > rays / 10);
@@ -270,7 +270,7 @@ struct Structure {
 };
 
 void check_structure(const TriangleSoup &soup, const Bvh &bvh) {
-    const bool whole = references_of(soup).size() == soup.corners.size();
+    const bool whole = split_primitives(soup).size() == soup.corners.size();
     Structure structure{soup, bvh, whole};
     structure.visit(0);
     CHECK(structure.nodes == bvh.nodes.size());
@@ -285,14 +285,14 @@ void check_structure(const TriangleSoup &soup, const Bvh &bvh) {
 // Builders that do worse: halves of the triangles in the given order, or along the longest axis.
 void cut_in_halves(BinaryTree &tree, uint index, bool ordered) {
     BinaryNode &node = tree.nodes[index];
-    const auto set = std::span(tree.references).subspan(node.first, node.count);
+    const auto set = std::span(tree.primitives).subspan(node.first, node.count);
     node.box = Box::empty();
-    for (const Reference &reference : set)
-        node.box.add(reference.box);
+    for (const BuildPrimitive &primitive : set)
+        node.box.add(primitive.box);
     node.left = 0;
-    if (node.count <= BLOCK_SIZE)
+    if (node.count <= block_size)
         return;
-    const uint half = ordered ? uint(halve(set)) : node.count / 2;
+    const uint half = ordered ? uint(halve_at_median(set)) : node.count / 2;
     node.left = tree.node_count;
     tree.node_count += 2;
     tree.nodes[node.left] = {Box::empty(), node.first, half, 0};
@@ -302,9 +302,9 @@ void cut_in_halves(BinaryTree &tree, uint index, bool ordered) {
 }
 
 BinaryTree halves_of(const TriangleSoup &soup, bool ordered) {
-    BinaryTree tree = build_binary_tree(whole_triangles(soup)); // for its references
+    BinaryTree tree = build_binary_tree(whole_primitives(soup)); // for its primitives
     if (!ordered)
-        std::shuffle(tree.references.begin(), tree.references.end(), std::mt19937(1));
+        std::shuffle(tree.primitives.begin(), tree.primitives.end(), std::mt19937(1));
     tree.nodes[0] = {Box::empty(), 0, uint(soup.corners.size()), 0};
     tree.node_count = 1;
     cut_in_halves(tree, 0, ordered);
@@ -333,7 +333,7 @@ TEST_CASE("closest hits by the tree are those of brute force", "[bvh]") {
 }
 
 TEST_CASE("nasty triangles", "[bvh]") {
-    for (int which = 0; which < NASTY_COUNT; which++) {
+    for (int which = 0; which < nasty_count; which++) {
         INFO("case " << which);
         check_against_brute_force(nasty(which), 1500);
         check_structure(nasty(which), build_bvh(nasty(which)));
@@ -376,11 +376,12 @@ TEST_CASE("sah_cost of a tree known by hand", "[bvh]") {
     CHECK(bvh.nodes.size() == 1);
     CHECK(bvh.blocks.size() == 2);
     // Half areas: each square 1, the whole box 10 + 10 + 1.
-    CHECK(sah_cost(bvh) == Approx(NODE_COST + 2 * BLOCK_COST / 21));
-    CHECK(sah_cost(build_bvh(random_soup(1, 1, 1))) == NODE_COST + BLOCK_COST);
+    CHECK(sah_cost(bvh) == Approx(node_cost + 2 * block_cost / 21));
+    CHECK(sah_cost(build_bvh(random_soup(1, 1, 1))) == node_cost + block_cost);
 }
 
-// The limits are 3 % above what this builder reached when every split of every node was tried (SWEEP_SIZE without end).
+// The limits are 3 % above the costs that this builder reached when it tried every split of every node (an unlimited
+// max_sweep_size).
 TEST_CASE("trees cost what good trees cost, and bad ones more", "[bvh]") {
     struct Case {
         const char *name;
@@ -414,11 +415,11 @@ TEST_CASE("reinsertion mends a poor tree and keeps it whole", "[bvh]") {
 
 TEST_CASE("the parts of long triangles cover them, and make a cheaper tree that finds the same", "[bvh]") {
     const TriangleSoup soup = needles(3000, 6);
-    const std::vector<Reference> whole = whole_triangles(soup), parts = references_of(soup);
+    const std::vector<BuildPrimitive> whole = whole_primitives(soup), parts = split_primitives(soup);
     REQUIRE(parts.size() > whole.size());
     CHECK(parts.size() < 3 * whole.size());
     std::vector<std::vector<Box>> boxes(soup.corners.size());
-    for (const Reference &part : parts)
+    for (const BuildPrimitive &part : parts)
         boxes[part.triangle].push_back(part.box);
     Random random(7);
     for (int i = 0; i < 100000; i++) {
@@ -449,5 +450,5 @@ TEST_CASE("the parts of long triangles cover them, and make a cheaper tree that 
 
 TEST_CASE("triangles that fill their boxes stay whole", "[bvh]") {
     for (const TriangleSoup &soup : {grid(50, 0), grid(50, 0.2f), random_soup(1000, 0.1f, 3), nasty(0)})
-        CHECK(references_of(soup).size() == soup.corners.size());
+        CHECK(split_primitives(soup).size() == soup.corners.size());
 }

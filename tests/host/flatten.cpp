@@ -15,16 +15,18 @@ using namespace opal;
 TEST_CASE("the scene is moved and scaled into [-1, 1], by a power of two", "[flatten]") {
     for (double size : {1e-9, 0.3, 1.0, 2.0, 550.0, 1e12}) {
         const Vec3 corner{1e3 * size, -7 * size, 0};
-        const Frame frame = find_frame(scene_of({diffuse(Parallelogram{corner, {size, 0, 0}, {0, size / 3, 0}})}));
+        const Flattening flattening =
+            find_flattening(scene_of({diffuse(Parallelogram{corner, {size, 0, 0}, {0, size / 3, 0}})}));
         int exponent;
-        CHECK(std::frexp(frame.scale, &exponent) == 0.5);
-        const double half = 0.5 * size * frame.scale;
+        CHECK(std::frexp(flattening.scale, &exponent) == 0.5);
+        const double half = 0.5 * size * flattening.scale;
         CHECK(half > 0.5 - 1e-9);
         CHECK(half <= 1);
-        CHECK(frame.center.x == Approx(corner.x + size / 2).epsilon(1e-14));
+        CHECK(flattening.center.x == Approx(corner.x + size / 2).epsilon(1e-14));
     }
     // Half of the box is 1: the scale stays 1, and a position that is a float stays itself.
-    const Frame unit = find_frame(scene_of({diffuse(mesh_of({{-1, 0, 0}, {1, 0, 0}, {0, 1, 0.25}}, {{0, 1, 2}}))}));
+    const Flattening unit =
+        find_flattening(scene_of({diffuse(mesh_of({{-1, 0, 0}, {1, 0, 0}, {0, 1, 0.25}}, {{0, 1, 2}}))}));
     CHECK(unit.scale == 1);
     CHECK(unit({0.75, 0.5, 0.125}) == std::array<float, 3>{0.75f, 0, 0});
 }
@@ -42,9 +44,9 @@ TEST_CASE("what no triangle uses does not stretch the scene; point lights do", "
     TriangleMesh mesh = one_triangle;
     mesh.positions.push_back({1e9, 0, 0});
     SceneDescription scene = scene_of({diffuse(mesh)});
-    CHECK(find_frame(scene).scale == 2);
+    CHECK(find_flattening(scene).scale == 2);
     scene.point_lights.push_back({{0, 0, 7}, {1, 1, 1}, {}});
-    CHECK(find_frame(scene).scale == 0.25);
+    CHECK(find_flattening(scene).scale == 0.25);
 }
 
 TEST_CASE("a scene of nothing", "[flatten]") {
@@ -330,7 +332,7 @@ TEST_CASE("the largest triangles are listed beside the tree, each triangle is in
 TEST_CASE("two triangles are one face only where they make a convex quadrilateral", "[flatten]") {
     const std::array<unsigned, 3> front{0, 1, 2};
     const auto faces = [&](Vec3 far, std::array<unsigned, 3> second) {
-        // A larger triangle below everything keeps the frame the same.
+        // A larger triangle below everything keeps the flattening the same.
         const FlatScene scene =
             flatten(scene_of({diffuse(mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, far}, {front, second})),
                               diffuse(mesh_of({{-4, -4, -1}, {4, -4, -1}, {0, 4, -1}}, {{0, 1, 2}}))}),

@@ -23,7 +23,7 @@ std::vector<std::string> warnings_of(const std::string &camera, const std::strin
 <camera type="perspective"><transform name="toWorld"><lookat origin=")" +
                                       camera + R"(" target="0 0 0" up="0 0 1"/></transform></camera></scene>)");
     const SceneDescription scene = load_scene(file);
-    std::vector<std::string> lines = sanity_warnings(scene, flatten(scene, 1));
+    std::vector<std::string> lines = precision_warnings(scene, flatten(scene, 1));
     for (std::string &line : lines)
         line = line.substr(folder.path().string().size() + 1);
     return lines;

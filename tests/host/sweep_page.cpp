@@ -48,8 +48,8 @@ TEST_CASE("Slope, cost, ratios and bias of replicates whose truth is known", "[s
     CHECK(slow.slope.estimate == Approx(-1).margin(0.02));
     CHECK(slow.slope.high - slow.slope.low < 0.1);
     CHECK(slow.time_to(0.01).estimate == Approx(1600).epsilon(0.05));
-    CHECK(slow.slower.estimate == Approx(4).epsilon(0.05));
-    CHECK(slow.slower.low < slow.slower.estimate);
+    CHECK(slow.relative_time.estimate == Approx(4).epsilon(0.05));
+    CHECK(slow.relative_time.low < slow.relative_time.estimate);
     CHECK(quick.efficiency.estimate == Approx(4).epsilon(0.05));
     CHECK(quick.bias_p > 1e-3);
     for (Replicate &r : record.strategies[1].points.back().replicates)
@@ -94,7 +94,7 @@ TEST_CASE("An error map's inputs: the reference's variance is subtracted without
         }
         return i;
     };
-    const Image reference = reference_of(image(1), image(1)); // variance 0.005 of its mean
+    const Image reference = reference_from_halves(image(1), image(1)); // variance 0.005 of its mean
     CHECK(error_against(reference, image(1)).mse == Approx(0.01).epsilon(0.03));
     CHECK(error_against(reference, image(0)).mse == Approx(0).margin(2e-4));
     CHECK(mean_luminance(reference) == Approx(1).epsilon(1e-3));

@@ -33,9 +33,9 @@ struct Rendering {
     FlatScene flat = flatten(noisy_scene(), 1);
     RenderOptions options{.build = {.lanes = 1}};
     Renderer renderer{device(), flat, options};
-    FilmStatistics until(const StopRule &rule, unsigned seed, unsigned most = 1u << 20, Stopped *stopped = nullptr) {
+    FilmStatistics until(const StopRule &rule, unsigned seed, unsigned most = 1u << 20, StopResult *stopped = nullptr) {
         renderer.restart(seed);
-        const Stopped s = render_until(renderer, rule, seed, most, {});
+        const StopResult s = render_until(renderer, rule, seed, most, {});
         if (stopped)
             *stopped = s;
         return statistics_of(renderer.film());
@@ -51,7 +51,7 @@ TEST_CASE("The interval of --target-error covers the true mean as often as it sa
     int covered = 0, runs = 100, met = 0;
     stats::Moments means;
     for (int i = 0; i < runs; i++) {
-        Stopped stopped;
+        StopResult stopped;
         const FilmStatistics s = r.until({.relative_error = target}, test_seed(100 + unsigned(i)), 1u << 20, &stopped);
         REQUIRE(s.samples == 64ull * stopped.spp); // the pilot's are not in the film
         const double error = std::hypot(s.stderr_luminance, truth.stderr_luminance);
@@ -68,7 +68,7 @@ TEST_CASE("The interval of --target-error covers the true mean as often as it sa
 
 TEST_CASE("--target-error takes at most the samples that are allowed, and says so", "[stop_rules]") {
     Rendering r;
-    Stopped stopped;
+    StopResult stopped;
     const FilmStatistics s = r.until({.relative_error = 1e-6}, test_seed(3), 32, &stopped);
     CHECK(stopped.spp == 32);
     CHECK(s.samples == 64 * 32);
@@ -78,7 +78,7 @@ TEST_CASE("--target-error takes at most the samples that are allowed, and says s
 TEST_CASE("--time ends after that much kernel time, and stops no render that ends before", "[stop_rules]") {
     Rendering r;
     CHECK(r.until({.seconds = 1000}, test_seed(4), 16).samples == 64 * 16);
-    Stopped stopped;
+    StopResult stopped;
     const FilmStatistics s = r.until({.seconds = 0.3}, test_seed(5), 1u << 30, &stopped);
     CHECK(stopped.complete);
     CHECK(s.samples < 64ull << 30);

@@ -1,4 +1,4 @@
-// The BSDFs' XML: their manuals are in cl/bsdfs/NAME.cl.
+// Parsers of BSDFs. Their manuals are in cl/bsdfs/NAME.cl.
 #include "read/nori/parsers.h"
 
 #include <algorithm>
@@ -7,7 +7,7 @@ namespace opal {
 
 namespace {
 
-// A reflectance: not negative; above 1 is the scene's own affair.
+// A reflectance: not negative. Values above 1 are allowed.
 Color reflectance(Properties &properties, const std::string &name) {
     Color color = properties.color(name).value_or(Color{0.5, 0.5, 0.5});
     properties.check(*std::min_element(color.begin(), color.end()) >= 0, name, "must not be negative");
@@ -77,7 +77,7 @@ Bsdf parse_bsdf(const XmlNode &node, const ParseContext &context) {
     bsdf.place = node.place();
     bsdf.record.kind = static_cast<uint>(type.kind);
     type.parse(properties, bsdf.record);
-    properties.ignore("use_cosine"); // written by exporters for every material
+    properties.ignore("use_cosine"); // exporters write it for every material
     properties.finish();
     return bsdf;
 }

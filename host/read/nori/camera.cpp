@@ -1,4 +1,4 @@
-// The camera and its reconstruction filter.
+// Parsers of the camera and of its reconstruction filter.
 #include "read/nori/parsers.h"
 
 namespace opal {

@@ -1,4 +1,4 @@
-// The emitters' XML: area lights belong to a mesh, point lights to the scene.
+// Parsers of emitters. Area lights are children of a mesh, point lights of the scene.
 #include "read/nori/parsers.h"
 
 #include <algorithm>
@@ -15,10 +15,10 @@ Color emitted(Properties &properties, const std::string &name) {
 
 struct EmitterType {
     std::string name;
-    bool of_mesh; // else of the scene
+    bool of_mesh; // a child of a mesh; false: of the scene
 };
 
-// parallelogram_emitter is what the university dialect calls an area light of a parallelogram.
+// parallelogram_emitter: the 2022 course's name for the area light of a parallelogram.
 const std::vector<EmitterType> emitter_types = {{"area", true}, {"parallelogram_emitter", true}, {"point", false}};
 
 void require_parent(const XmlNode &node, bool in_mesh) {

@@ -1,4 +1,4 @@
-// The integrators' XML: the properties of both dialects, turned into choices of the strategy axes.
+// Parsers of integrators: the properties of both dialects become choices of the strategy's axes.
 #include "read/nori/parsers.h"
 #include "scene/options.h"
 
@@ -33,13 +33,13 @@ void parse_direct_lighting(Properties &properties, SceneDescription &scene) {
         strategy[AXIS_mis] = CHOICE_mis_one_sample;
 }
 
-// rr and mis are booleans here and strings as Opal's axes: both are understood.
+// rr and mis are booleans in this dialect, and strings as Opal's axes. Both are read.
 void parse_path_tracer_recursive(Properties &properties, SceneDescription &scene) {
     bool nee = properties.boolean("nee").value_or(false), mis = properties.boolean_if("mis").value_or(false);
     bool rr = properties.boolean_if("rr").value_or(false);
     bool fixed = properties.number("rr_prob").has_value();
-    bool dynamic = properties.boolean("rr_dynamic").value_or(!fixed); // the course's exporter writes it
-    properties.ignore("iterative");                                   // how some solutions loop
+    bool dynamic = properties.boolean("rr_dynamic").value_or(!fixed); // written by the course's exporter
+    properties.ignore("iterative");                                   // a choice of implementation
     Strategy &strategy = scene.strategy;
     strategy[AXIS_lighting] = mis ? CHOICE_lighting_mis : nee ? CHOICE_lighting_emitter : CHOICE_lighting_bsdf;
     strategy[AXIS_rr] = !rr ? CHOICE_rr_off : fixed && !dynamic ? CHOICE_rr_fixed : CHOICE_rr_throughput_eta;
@@ -50,14 +50,14 @@ struct Parser {
     void (*parse)(Properties &, SceneDescription &);
 };
 
-// Integrators that are not here have no properties of their own.
+// Integrators with properties of their own.
 const std::vector<Parser> parsers = {{"normals", parse_normals},
                                      {"ao", parse_ao},
                                      {"simple", parse_simple},
                                      {"direct_lighting", parse_direct_lighting},
                                      {"path_tracer_recursive", parse_path_tracer_recursive}};
 
-// Every axis and number can be written as a property too, and then wins.
+// Every option of the strategy can be given as a property, which then decides.
 void parse_options(Properties &properties, Strategy &strategy) {
     for (const StrategyOption &option : strategy_options())
         if (auto value = properties.text(option.xml_tag, option.xml_name))

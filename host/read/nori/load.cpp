@@ -12,7 +12,7 @@ namespace opal {
 
 namespace {
 
-// Without an <rfilter>, each dialect has a filter of its own (SCENE_FORMAT section 3).
+// The default filter, for a scene without <rfilter>: the 2022 course has a box, Nori a Gaussian of radius 2.
 void choose_filter(SceneDescription &scene) {
     Filter &filter = scene.camera.filter;
     if (filter.given)

@@ -1,4 +1,4 @@
-// Reads a Nori scene (both dialects, shared/SCENE_FORMAT) into a SceneDescription.
+// The reader of Nori's scenes, in the dialects of Nori itself and of the 2022 course.
 #pragma once
 
 #include "scene/scene.h"
@@ -9,8 +9,8 @@ struct LoadOptions {
     bool lenient = false; // an unknown property warns instead of failing
 };
 
-// Throws Error "file:line:col: what is wrong; available: ...". Relative file names are looked for beside the XML file,
-// then in the current folder.
+// Reads a scene. Relative file names are looked for beside the XML file, then in the current folder. Throws Error
+// "file:line:col: what is wrong; available: ...".
 SceneDescription load_scene(const std::filesystem::path &file, const LoadOptions &options = {});
 
 } // namespace opal

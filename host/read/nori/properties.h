@@ -1,4 +1,4 @@
-// The properties and child objects of an XML object, fetched by type and name. What nobody asked for is an error.
+// The properties and child objects of an XML object, fetched by type and name. One that is never fetched is an error.
 #pragma once
 
 #include "base/error.h"
@@ -12,20 +12,20 @@
 
 namespace opal {
 
-// What parsing needs to know beside the XML itself.
+// The context of parsing: the folder of the file, and the user's options.
 struct ParseContext {
     std::filesystem::path folder; // of the XML file: relative file names are looked for there first
     bool lenient = false;         // an unknown property warns instead of failing
 };
 
-// Usage: fetch everything that may be there, use place_of / fail for values that make no sense, then call finish().
-// All values are parsed by the constructor, so that a malformed one is an error even where its name is unknown.
+// Usage: fetch every property the object may have, check the values with check(), then call finish(). The constructor
+// parses all values, so that a malformed value is an error even if its name is unknown.
 class Properties {
 public:
-    // Checks the object's attributes: `type` alone, or none where it has no types (<scene>).
+    // Checks the attributes of the object: `type` alone, or none if the object has no types (<scene>).
     Properties(const XmlNode &object, const ParseContext &context, bool has_type = true);
 
-    // The value, or nothing where it was not written; an Error where it has another type.
+    // The value, or nothing if it is not given. Error if it has another type.
     std::optional<bool> boolean(const std::string &name) { return find<bool>("boolean", name); }
     std::optional<int> integer(const std::string &name) { return find<int>("integer", name); }
     std::optional<double> number(const std::string &name) { return find<double>("float", name); }
@@ -35,23 +35,23 @@ public:
     std::optional<Color> color(const std::string &name) { return find<Color>("color", name); }
     std::optional<Transform> transform(const std::string &name) { return find<Transform>("transform", name); }
 
-    // The value, which must be there.
+    // The value, or an Error if it is not given.
     template <class T> T required(const std::optional<T> &value, const std::string &name) const {
         if (!value)
             fail("<" + object_.tag() + "> lacks its property '" + name + "'");
         return *value;
     }
 
-    // As boolean, but nothing where the property has another type: for names that two dialects use differently. What is
-    // left can be asked for by text().
+    // As boolean(), but nothing if the property has another type: for names that the dialects use with different types.
+    // text() gets the value then.
     std::optional<bool> boolean_if(const std::string &name);
-    // The value as written, of a property of that type; nothing where it is missing or was taken by boolean_if.
+    // The value as written, of a property of that type; nothing if it is missing or was fetched by boolean_if.
     std::optional<std::string> text(const std::string &tag, const std::string &name);
 
-    // Known and accepted, whatever its type, but without a meaning.
+    // Accepts the property, whatever its type, and ignores it.
     void ignore(const std::string &name);
 
-    // A check of a value: fails at its place, or at the object's where the value is a default.
+    // Error at the place of the property, or of the object if the value is a default, unless `good`.
     void check(bool good, const std::string &name, const std::string &message) const {
         if (!good)
             fail_at(name, message);
@@ -63,10 +63,10 @@ public:
 
     const XmlNode &object() const { return object_; }
     const ParseContext &context() const { return context_; }
-    SourcePlace place_of(const std::string &name) const; // of the property, or of the object without it
+    SourcePlace place_of(const std::string &name) const; // of the property, or of the object if it is missing
     [[noreturn]] void fail(const std::string &message) const { object_.fail(message); }
 
-    // Every property and child that was never asked for is an Error (a warning, for properties, if lenient).
+    // Error at the first property or child that was never fetched. With `lenient`, properties get a warning instead.
     void finish() const;
 
 private:
@@ -104,7 +104,7 @@ private:
     std::vector<std::string> known_properties_, known_children_;
 };
 
-// Runs `parse`; its Error gets the place of this node.
+// Runs `parse` and adds the place of this node to its Error.
 template <class Parse> decltype(auto) at_place(const XmlNode &node, Parse parse) {
     try {
         return parse();
@@ -113,7 +113,7 @@ template <class Parse> decltype(auto) at_place(const XmlNode &node, Parse parse)
     }
 }
 
-// The row of a table that the object's `type` names; the Error lists the types of its tag.
+// The row of a table whose name is the object's `type`. Error that lists the types there are.
 template <class Rows> const auto &row_of_type(const XmlNode &object, const Rows &rows) {
     object.require_attributes({"type"});
     std::string type = object.attribute("type");

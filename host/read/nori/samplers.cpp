@@ -1,4 +1,4 @@
-// The sampler: where the random numbers come from, and how many samples a pixel gets.
+// Parser of samplers: the source of random numbers, and the samples a pixel.
 #include "read/nori/parsers.h"
 
 namespace opal {

@@ -1,4 +1,4 @@
-// The meshes: triangles of an OBJ file, and parallelograms.
+// Parsers of meshes: triangles of an OBJ file, and parallelograms.
 #include "base/error.h"
 #include "read/nori/parsers.h"
 #include "read/obj.h"
@@ -9,7 +9,7 @@ namespace opal {
 
 namespace {
 
-// Beside the XML file, then in the current folder; backslashes separate folders too.
+// Finds a file beside the XML file, else in the current folder. Backslashes separate folders, too.
 std::filesystem::path find_file(Properties &properties, std::string name) {
     std::replace(name.begin(), name.end(), '\\', '/');
     std::filesystem::path beside = properties.context().folder / name;
@@ -27,7 +27,7 @@ void parse_obj(Properties &properties, const Transform &to_world, Mesh &mesh) {
     std::filesystem::path file = find_file(properties, name);
     try {
         mesh.shape = read_obj(file, to_world);
-    } catch (const Error &error) { // the OBJ's own place leads
+    } catch (const Error &error) { // the place in the OBJ file comes first
         throw Error(std::string(error.what()) + " (the mesh at " + mesh.place.text() + ")");
     }
 }

@@ -8,7 +8,7 @@ namespace opal {
 
 namespace {
 
-// A string property that holds numbers, as many as there are.
+// The numbers in a string property.
 std::vector<double> numbers(Properties &properties, const std::string &name) {
     std::string text = properties.string(name).value_or("");
     try {

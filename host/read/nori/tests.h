@@ -1,4 +1,4 @@
-// Tests as scenes (SCENE_FORMAT section 8): a <test> with the scenes or BSDFs that it judges.
+// Nori's tests as XML: a <test> holds scenes or BSDFs and what is expected of them.
 #pragma once
 
 #include "read/nori/load.h"
@@ -6,11 +6,11 @@
 namespace opal {
 
 struct TestDescription {
-    std::string type;               // ttest or chi2test
-    std::vector<double> references; // ttest: one a scene, or one a BSDF and angle (all angles of the first BSDF first)
-    std::vector<double> angles;     // ttest of BSDFs: of wi to the normal, degrees
-    int sample_count = 100000;      // ttest: of each mean; chi2test: of each histogram, -1: 5000 a bin
-    double significance_level = 0.01; // of all references together
+    std::string type;                 // ttest or chi2test
+    std::vector<double> references;   // ttest: expected means, one a scene, or one a BSDF and angle (BSDF-major)
+    std::vector<double> angles;       // ttest of BSDFs: between wi and the normal, degrees
+    int sample_count = 100000;        // ttest: samples a mean; chi2test: samples a histogram, -1: 5000 a bin
+    double significance_level = 0.01; // of the whole test, over all its references
     int resolution = 10;              // chi2test: bins of cos(theta) over [-1, 1]; twice as many of phi
     int min_expected_frequency = 5;   // chi2test: bins expected to hold fewer are pooled
     int test_count = 5;               // chi2test: random wi for each BSDF

@@ -50,8 +50,8 @@ Transform parse_lookat(const XmlNode &node) {
     return Transform::look_at(origin, target, up);
 }
 
-// The volume that the unit cube's image has, relative to the box with its edges (Hadamard's inequality): 0 where the
-// map is singular, whatever its scale.
+// |det| over the product of the columns' lengths, 0 to 1 (Hadamard's inequality): 0 if the map is singular, whatever
+// its scale.
 bool invertible(const Transform &t) {
     double box = 1;
     for (int i = 0; i < 3; ++i)

@@ -1,4 +1,4 @@
-// <transform>: translate, scale, rotate, matrix and lookat, applied to a point in document order.
+// The parser of <transform>: translate, scale, rotate, matrix and lookat, applied to points in document order.
 #pragma once
 
 #include "base/math.h"
@@ -6,7 +6,7 @@
 
 namespace opal {
 
-// Throws Error at the operation that is malformed, or at the transform where it is not invertible.
+// Error at an operation that is malformed, or at the transform if it is not invertible.
 Transform parse_transform(const XmlNode &node);
 
 } // namespace opal
