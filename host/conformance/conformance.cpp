@@ -23,8 +23,8 @@ Vec3 direction_at(double degrees) {
 class TestRun {
 public:
     TestRun(const TestDescription &test, const Device &device, const ConformanceOptions &options,
-            const std::function<void(const ConformanceCase &)> &told)
-        : test_(test), device_(device), options_(options), told_(told) {}
+            const std::function<void(const ConformanceCase &)> &on_case)
+        : test_(test), device_(device), options_(options), on_case_(on_case) {}
 
     std::vector<ConformanceCase> run() {
         const double cases =
@@ -40,8 +40,8 @@ public:
 private:
     void finish(ConformanceCase result) {
         result.passed = !result.result.rejected(level_);
-        if (told_)
-            told_(result);
+        if (on_case_)
+            on_case_(result);
         done_.push_back(std::move(result));
     }
 
@@ -130,7 +130,7 @@ private:
     const TestDescription &test_;
     const Device &device_;
     const ConformanceOptions &options_;
-    const std::function<void(const ConformanceCase &)> &told_;
+    const std::function<void(const ConformanceCase &)> &on_case_;
     double level_ = 0;
     std::vector<ConformanceCase> done_;
 };
@@ -139,8 +139,8 @@ private:
 
 std::vector<ConformanceCase> run_test(const TestDescription &test, const Device &device,
                                       const ConformanceOptions &options,
-                                      const std::function<void(const ConformanceCase &)> &told) {
-    return TestRun(test, device, options, told).run();
+                                      const std::function<void(const ConformanceCase &)> &on_case) {
+    return TestRun(test, device, options, on_case).run();
 }
 
 } // namespace opal

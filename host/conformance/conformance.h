@@ -1,4 +1,4 @@
-// Runs Nori's tests (scene/test_scene.h) on a device.
+// Runs Nori's <test> files (read/nori/tests.h) on a device.
 #pragma once
 
 #include "device/program.h"
@@ -27,10 +27,9 @@ struct ConformanceCase {
     bool passed = false;
 };
 
-// Judges every case of the test at its significance level, split over the cases (Sidak); `told` gets each as it is
-// done.
+// Judges every case of the test at its significance level, split over the cases (Sidak). Calls on_case after each.
 std::vector<ConformanceCase> run_test(const TestDescription &test, const Device &device,
                                       const ConformanceOptions &options,
-                                      const std::function<void(const ConformanceCase &)> &told = {});
+                                      const std::function<void(const ConformanceCase &)> &on_case = {});
 
 } // namespace opal

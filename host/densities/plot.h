@@ -1,4 +1,4 @@
-// The picture of a warp: where its samples fell, what its density says, and how far apart they are.
+// The picture of a density test: the samples, the stated density, and their difference.
 #pragma once
 
 #include "densities/sampled.h"

@@ -1,5 +1,5 @@
-// What the device draws beside what it says about the density: a warp, a BSDF seen from one direction, the lights of a
-// scene.
+// Sampling on the device beside the density that the device states: of a warp, of a BSDF seen from one direction, of
+// the lights of a scene.
 #pragma once
 
 #include "probe/kernel_probe.h"
@@ -12,12 +12,12 @@ namespace opal {
 struct Sampled {
     std::string name;
     const stats::Domain *domain = nullptr;
-    std::function<void(const Planes &numbers, stats::Histogram &histogram)>
-        draw;                               // adds a sample for each of the numbers
-    stats::Density density;                 // the device's own, over the domain's measure
-    bool may_fail = false;                  // draws without a sample are right (host/stats/histogram.h)
-    std::vector<double> splits_u, splits_v; // where quadrature finds its peaks and edges
-    double relative_error = 1e-5;           // that quadrature can reach
+    // Adds a sample to the histogram for each column of random numbers.
+    std::function<void(const Planes &numbers, stats::Histogram &histogram)> draw;
+    stats::Density density;                 // the device's, over the domain's measure
+    bool may_fail = false;                  // a draw may give no sample (host/stats/histogram.h)
+    std::vector<double> splits_u, splits_v; // where the density has peaks and edges, for quadrature
+    double relative_error = 1e-5;           // of quadrature, in a cell
 };
 
 const char *warp_name(int warp);
@@ -39,7 +39,7 @@ struct DensityCheck {
 DensityCheck check_density(KernelProbe &probe, const Sampled &sampled, int nu, int nv, size_t count, unsigned seed,
                            const stats::ChiSquareOptions &options = {});
 
-// Draws `count` samples in batches that memory holds: `use` gets the numbers of each.
+// Passes random numbers for `count` samples to `use`, in batches that fit in memory.
 void draw_in_batches(KernelProbe &probe, size_t count, unsigned seed,
                      const std::function<void(const Planes &numbers)> &use);
 

@@ -3,6 +3,7 @@
 #include "base/table.h"
 #include "read/nori/load.h"
 #include "read/nori/parsers.h"
+#include "scene/examples.h"
 #include "scene/options.h"
 
 #include <fmt/format.h>
@@ -81,30 +82,19 @@ Target open_bsdf(const std::string &kind, const Parameters &parameters, const De
     return target;
 }
 
-// Part of the unit square of the plane z = 0 as a light: triangles between these points, or one parallelogram.
-Mesh light_mesh(std::vector<Vec3> points, const std::vector<std::array<unsigned, 3>> &triangles, double radiance) {
-    TriangleMesh shape;
-    shape.positions = std::move(points);
-    for (const auto &[a, b, c] : triangles)
-        shape.triangles.push_back({{{a, OPAL_NONE}, {b, OPAL_NONE}, {c, OPAL_NONE}}});
-    Mesh mesh;
-    mesh.shape = shape;
+Mesh light_of(examples::Shape shape, double radiance) {
+    Mesh mesh = examples::light(std::move(shape), radiance);
     mesh.bsdf = default_bsdf();
-    mesh.radiance = Color{radiance, radiance, radiance};
     return mesh;
 }
 
-Mesh light_parallelogram(Vec3 origin, Vec3 u, Vec3 v, double radiance) {
-    Mesh mesh = light_mesh({}, {}, radiance);
-    mesh.shape = Parallelogram{origin, u, v};
-    return mesh;
-}
-
-// The square in seven triangles of very different size, one of them a sliver.
+// Part of the unit square of the plane z = 0, between x0 and x1, in six triangles of very different size, one of them a
+// sliver.
 Mesh light_triangles(double x0, double x1, double radiance) {
     std::vector<Vec3> p = {{x0, 0, 0},    {x1, 0, 0},   {x1, 1, 0}, {x0, 1, 0}, {x0 + (x1 - x0) * 0.7, 0.35, 0},
                            {x1, 0.36, 0}, {x1, 0.37, 0}};
-    return light_mesh(p, {{0, 1, 4}, {1, 5, 4}, {5, 6, 4}, {6, 2, 4}, {2, 3, 4}, {3, 0, 4}}, radiance);
+    return light_of(examples::mesh_of(std::move(p), {{0, 1, 4}, {1, 5, 4}, {5, 6, 4}, {6, 2, 4}, {2, 3, 4}, {3, 0, 4}}),
+                    radiance);
 }
 
 struct LightRow {
@@ -114,14 +104,14 @@ struct LightRow {
 const std::vector<LightRow> lights = {
     {"parallelogram",
      [] {
-         return std::vector<Mesh>{light_parallelogram({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1)};
+         return std::vector<Mesh>{light_of(Parallelogram{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 1)};
      }},
     {"mesh", [] { return std::vector<Mesh>{light_triangles(0, 1, 1)}; }},
     {"many",
      [] {
          return std::vector<Mesh>{
-             light_parallelogram({0, 0, 0}, {0.25, 0, 0}, {0, 1, 0}, 1), light_triangles(0.25, 0.75, 2),
-             light_parallelogram({0.75, 0, 0}, {0.25, 0, 0}, {0, 0.5171, 0}, 5)}; // its end lies between cells
+             light_of(Parallelogram{{0, 0, 0}, {0.25, 0, 0}, {0, 1, 0}}, 1), light_triangles(0.25, 0.75, 2),
+             light_of(Parallelogram{{0.75, 0, 0}, {0.25, 0, 0}, {0, 0.5171, 0}}, 5)}; // its end lies between cells
      }},
 };
 

@@ -1,4 +1,4 @@
-// What `opal warp` can show, by name.
+// The warps, BSDFs and lights that `opal warp` can test, by name.
 #pragma once
 
 #include "densities/sampled.h"

@@ -180,16 +180,11 @@ struct ClosedMesh {
 
 // Convex meshes around the origin, with a half side of about 1.
 const std::vector<ClosedMesh> &closed_meshes() {
-    const auto of = [](TriangleMesh shape) {
-        SceneDescription scene;
-        scene.meshes.push_back(made_of(std::move(shape), diffuse(0.5)));
-        return scene;
-    };
-    static const std::vector<ClosedMesh> meshes = {{of(cube({}, 1, false)), true},
-                                                   {edges::closed_sphere(3), true},
-                                                   {edges::closed_sphere(12), false},
-                                                   {edges::closed_sphere(64), false},
-                                                   {of(slivered_cube(1e5)), false}};
+    static const std::vector<ClosedMesh> meshes = {{scene_of_mesh(cube({}, 1)), true},
+                                                   {scene_of_mesh(edges::closed_sphere(3)), true},
+                                                   {scene_of_mesh(edges::closed_sphere(12)), false},
+                                                   {scene_of_mesh(edges::closed_sphere(64)), false},
+                                                   {scene_of_mesh(slivered_cube(1e5)), false}};
     return meshes;
 }
 

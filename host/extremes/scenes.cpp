@@ -32,67 +32,6 @@ SceneDescription moved(SceneDescription scene, const Transform &by) {
     return scene;
 }
 
-Camera camera(Vec3 from, Vec3 to, double fov) {
-    Camera camera;
-    const Vec3 d = normalize(to - from);
-    camera.to_world = Transform::look_at(from, to, std::abs(d.y) > 0.9 ? Vec3{0, 0, 1} : Vec3{0, 1, 0});
-    camera.fov = fov;
-    camera.near_clip = 0;
-    camera.far_clip = 1e30;
-    return camera;
-}
-
-BsdfRecord diffuse(double albedo) {
-    BsdfRecord record{};
-    record.kind = BSDF_diffuse;
-    record.u.diffuse = {{float(albedo), float(albedo), float(albedo)}, 1};
-    return record;
-}
-
-BsdfRecord microfacet(double alpha) {
-    BsdfRecord record{};
-    record.kind = BSDF_microfacet;
-    record.u.microfacet = {float(alpha), 1.5f, 1, 0.7f, {0.3f, 0.3f, 0.3f}};
-    return record;
-}
-
-BsdfRecord phong(double exponent) {
-    BsdfRecord record{};
-    record.kind = BSDF_phong;
-    record.u.phong = {{0.5f, 0.5f, 0.5f}, 0.5f, {0.5f, 0.5f, 0.5f}, float(exponent)};
-    return record;
-}
-
-BsdfRecord dielectric(double int_ior) {
-    BsdfRecord record{};
-    record.kind = BSDF_dielectric;
-    record.u.dielectric = {float(int_ior), 1};
-    return record;
-}
-
-TriangleMesh mesh_of(std::vector<Vec3> positions, std::vector<std::array<unsigned, 3>> triangles) {
-    TriangleMesh mesh;
-    mesh.positions = std::move(positions);
-    for (const auto &[a, b, c] : triangles)
-        mesh.triangles.push_back({{{a, OPAL_NONE}, {b, OPAL_NONE}, {c, OPAL_NONE}}});
-    return mesh;
-}
-
-TriangleMesh quad(Vec3 o, Vec3 u, Vec3 v) { return mesh_of({o, o + u, o + u + v, o + v}, {{0, 1, 2}, {0, 2, 3}}); }
-
-TriangleMesh cube(Vec3 center, double s, bool inwards) {
-    std::vector<Vec3> corners;
-    for (unsigned i = 0; i < 8; i++)
-        corners.push_back(center + Vec3{i & 1 ? s : -s, i & 2 ? s : -s, i & 4 ? s : -s});
-    const unsigned faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                  {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}; // outwards
-    std::vector<std::array<unsigned, 3>> triangles;
-    for (const auto &f : faces)
-        for (unsigned i : {1u, 2u})
-            triangles.push_back(inwards ? std::array{f[0], f[i + 1], f[i]} : std::array{f[0], f[i], f[i + 1]});
-    return mesh_of(std::move(corners), std::move(triangles));
-}
-
 TriangleMesh slivered_cube(double aspect) {
     const double ticks[] = {-1, -1 + 1 / aspect, 1};
     TriangleMesh mesh;
@@ -131,19 +70,6 @@ TriangleMesh cube_with_specks(double area) {
         }
     }
     return cut;
-}
-
-Mesh made_of(std::variant<TriangleMesh, Parallelogram> shape, const BsdfRecord &bsdf) {
-    Mesh mesh;
-    mesh.shape = std::move(shape);
-    mesh.bsdf.record = bsdf;
-    return mesh;
-}
-
-Mesh light(std::variant<TriangleMesh, Parallelogram> shape, double radiance) {
-    Mesh mesh = made_of(std::move(shape), diffuse(0));
-    mesh.radiance = Color{radiance, radiance, radiance};
-    return mesh;
 }
 
 SceneDescription path_traced(std::vector<Mesh> meshes, const Camera &camera, unsigned max_depth) {

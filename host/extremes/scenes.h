@@ -1,28 +1,16 @@
 // The scenes that the stress tests of `opal extremes` stretch. A room has half side 1.
 #pragma once
 
-#include "scene/scene.h"
+#include "scene/examples.h"
 
 namespace opal::extremes {
 
-// A camera at `from` that looks at `to`. fov: full horizontal angle, degrees. The caller sets the resolution.
-Camera camera(Vec3 from, Vec3 to, double fov);
+using namespace examples;
 
-// Materials of one parameter; the others have ordinary values.
-BsdfRecord diffuse(double albedo);
-BsdfRecord microfacet(double alpha);
-BsdfRecord phong(double exponent);
-BsdfRecord dielectric(double int_ior);
-
-TriangleMesh mesh_of(std::vector<Vec3> positions, std::vector<std::array<unsigned, 3>> triangles);
-TriangleMesh quad(Vec3 o, Vec3 u, Vec3 v); // faces u x v
-TriangleMesh cube(Vec3 center, double half_side, bool inwards);
 // A cube of half side 1 that faces inwards; each side is cut along both axes, 1 / aspect from the edge.
 TriangleMesh slivered_cube(double aspect);
 // The same cube with a small triangle in the middle of each triangle, of `area` times its area.
 TriangleMesh cube_with_specks(double area);
-Mesh made_of(std::variant<TriangleMesh, Parallelogram> shape, const BsdfRecord &bsdf);
-Mesh light(std::variant<TriangleMesh, Parallelogram> shape, double radiance); // an area light that reflects nothing
 
 // A scene for path tracing with MIS and at most `max_depth` segments.
 SceneDescription path_traced(std::vector<Mesh> meshes, const Camera &camera, unsigned max_depth);

@@ -1,4 +1,4 @@
-// The functions that rendering uses, run one by one on a device (cl/kernels/probe.cl).
+// Runs the kernels' functions one by one on a device (cl/kernels/probe.cl).
 #pragma once
 
 #include "device/buffers.h"
@@ -12,7 +12,7 @@
 
 namespace opal {
 
-// Values of many samples, a plane each: what kernels read and write.
+// Values of many samples as the probe kernels read and write them: a structure of arrays, one plane a value.
 struct Planes {
     size_t count = 0, stride = 0; // samples; floats a plane, a multiple of 16
     std::vector<float> values;
@@ -35,7 +35,7 @@ struct NumberOptions {
 
 class KernelProbe {
 public:
-    // `scene` gives BSDFs, emitters and triangles; its features decide what is compiled. Error: what does not build.
+    // `scene` has the BSDFs, emitters and triangles; its features decide what is compiled. Error: the build failed.
     KernelProbe(const Device &device, const FlatScene &scene, const BuildOptions &build,
                 const Sources &sources = Sources::embedded());
 
@@ -64,8 +64,8 @@ private:
     std::vector<cl::Buffer> buffers_; // of the scene
 };
 
-// A scene that has these BSDFs, numbered as here, and nothing else worth mentioning: every feature on, every axis
-// decided at run time, so that one compiled program serves all.
+// An empty scene with these BSDFs, numbered as here. Every feature is on and every axis decided at run time, so that
+// one compiled program serves all.
 FlatScene scene_of_bsdfs(const std::vector<BsdfRecord> &bsdfs);
 
 Planes planes_of(std::span<const Vec3> points);

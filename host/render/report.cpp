@@ -12,7 +12,7 @@ using nlohmann::json;
 json strategy_json(const SceneDescription &scene) {
     json j = {{"integrator", scene.integrator_type}};
     for (const StrategyOption &option : strategy_options()) {
-        if (option.name == "lanes") // the report says how many there were
+        if (option.name == "lanes") // the report has its own key, the number that was used
             continue;
         const std::string text = option.text(scene.strategy);
         if (option.xml_tag == "float")

@@ -135,7 +135,7 @@ Findings check_numbers(const Device &device, const SelftestOptions &options) {
         which.sampler = known.sampler;
         which.spp = 4096;
         const Planes numbers = probe.numbers(4096, which);
-        findings.push_back(at_most(known.name, hash_of(numbers) != known.hash, 0));
+        findings.push_back(none_wrong(known.name, hash_of(numbers) != known.hash));
         for (float u : numbers.values)
             largest = worst_of(largest, u);
     }
@@ -149,12 +149,11 @@ Findings check_functions(const Device &device, const BuildOptions &build, const 
     return math_errors(device, build_selftest(device, build, sources), build.math);
 }
 
-Findings check_basics(const Device &device, const SelftestOptions &options) {
+Findings run_basics(const Device &device, const SelftestOptions &options) {
     const cl::Program program = build_selftest(device, options.build, *options.sources);
-    Findings findings = {at_most("records laid out otherwise", wrong_layouts(device, program), 0)};
-    const Findings numbers = check_numbers(device, options), math = math_errors(device, program, options.build.math);
-    findings.insert(findings.end(), numbers.begin(), numbers.end());
-    findings.insert(findings.end(), math.begin(), math.end());
+    Findings findings = {none_wrong("records laid out otherwise", wrong_layouts(device, program))};
+    append(findings, check_numbers(device, options));
+    append(findings, math_errors(device, program, options.build.math));
     return findings;
 }
 

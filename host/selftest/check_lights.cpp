@@ -1,29 +1,33 @@
 // Points on lights against the density that hitting them is weighed with, for each way to choose emitter and triangle.
 #include "densities/targets.h"
-#include "selftest/selftest.h"
+#include "selftest/checks.h"
 
 #include <cmath>
 
 namespace opal {
 
-Findings check_lights(const Device &device, const SelftestOptions &options) {
-    double smallest_p = 1, mass_error = 0, cases = 0;
-    unsigned seed = options.seed + 500;
+Findings light_findings(KernelProbe &probe, const Sampled &lights, const std::string &subject, const Effort &effort) {
+    Sampled sampled = lights;
+    sampled.relative_error = effort.quadrature_error;
+    const DensityCheck check = check_density(probe, sampled, effort.nu, effort.nv, effort.samples, effort.seed);
+    return {p_value("lights: points against density, smallest p", check.test.result.p_value, subject),
+            at_most("lights: integral of the pdf, off by", std::abs(check.test.mass.value - 1), 1e-3, subject)};
+}
+
+Findings run_lights(const Device &device, const SelftestOptions &options) {
+    Findings findings;
+    Effort effort = effort_of(options);
+    effort.seed += 500;
     for (const char *name : {"light:parallelogram", "light:mesh", "light:many"})
         for (const char *choice : {"uniform", "power"}) {
             const std::map<std::string, std::string> axes = {{"emitter-choice", choice},
                                                              {"triangle-choice", choice[0] == 'u' ? "uniform" : "area"},
                                                              {"specialise", "off"}};
-            Target target = open_target(name, {}, axes, device, options.build, *options.sources);
-            target.sampled.relative_error = options.full ? 2e-3 : 1e-2;
-            const DensityCheck check = check_density(*target.probe, target.sampled, selftest_cells(options),
-                                                     selftest_cells(options), selftest_samples(options), ++seed);
-            smallest_p = std::min(smallest_p, check.test.result.p_value);
-            mass_error = worst_of(mass_error, std::abs(check.test.mass.value - 1));
-            cases++;
+            const Target target = open_target(name, {}, axes, device, options.build, *options.sources);
+            effort.seed++;
+            append(findings, light_findings(*target.probe, target.sampled, target.description, effort));
         }
-    return {at_least("lights: points against density, smallest p", stats::sidak_p(smallest_p, cases), selftest_level),
-            at_most("lights: integral of the pdf, off by", mass_error, 1e-3)};
+    return summary_of(findings);
 }
 
 } // namespace opal

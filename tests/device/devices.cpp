@@ -1,5 +1,5 @@
-// Finding devices: one that crashes, hangs or says nothing costs its own line, and the choice among the others is
-// explained.
+// Finding devices: a driver that crashes, hangs or has no device loses its own line of the list and no other, and
+// the choice of a device is explained.
 #include "device/ask_driver.h"
 #include "support/device.h"
 #include "support/scratch.h"
@@ -13,7 +13,7 @@ using namespace opal::test;
 
 namespace {
 
-// A driver whose first entry point, which the loader calls before anything else, does what `body` says.
+// A driver whose first entry point runs `body` (C). Loaders call it before anything else.
 Driver make_driver(const ScratchFolder &folder, const std::string &name, const std::string &body) {
     const std::filesystem::path source =
         folder.write(name + ".c", "#include <stdio.h>\n#include <stdlib.h>\n#include <unistd.h>\n"
@@ -36,7 +36,7 @@ DeviceInfo listed(int index, const std::string &type, const std::string &name, c
     return info;
 }
 
-// A driver that has a usable device: others may be installed that have none.
+// The first installed driver that has a usable device.
 Driver good_driver() {
     set_probe_binary(OPAL_BINARY);
     for (const Driver &driver : find_drivers())
@@ -50,12 +50,12 @@ Outcome devices_with(const std::string &environment, const std::string &argument
     return run_shell(environment + " " + OPAL_BINARY + " devices " + arguments);
 }
 
-// `opal devices` where this folder's drivers are all that loaders are told of.
+// `opal devices` where the loaders know this folder's drivers alone.
 Outcome devices_of(const std::filesystem::path &vendors, const std::string &arguments = "") {
     return devices_with("OCL_ICD_FILENAMES= OCL_ICD_VENDORS=" + vendors.string(), arguments);
 }
 
-// What find_drivers says where these variables, and no others, tell the loaders where to look: "NAME -> LIBRARY" each.
+// The drivers that find_drivers finds with these environment variables of the loaders and no others: "NAME -> LIBRARY".
 std::vector<std::string> found_with(const std::map<std::string, std::string> &variables) {
     std::map<std::string, std::string> before;
     for (const char *name : {"OCL_ICD_FILENAMES", "OCL_ICD_VENDORS", "OPENCL_VENDOR_PATH"}) {

@@ -8,7 +8,7 @@ using namespace opal::test;
 
 namespace {
 
-// A program that does what opal does, but renders and tests itself with the kernels of that folder.
+// A stand-in for opal that renders and tests itself with the kernels of that folder.
 std::string opal_with(const ScratchFolder &folder, const std::string &cl_dir) {
     const std::string add = "case $1 in render | selftest) set -- \"$@\" --cl-dir " + cl_dir + " ;; esac";
     const std::string text = "#!/bin/sh\n" + add + "\nexec " OPAL_BINARY " \"$@\"\n";
@@ -26,7 +26,7 @@ void check_table(const Outcome &outcome, int exit_code, const std::vector<std::s
 
 } // namespace
 
-TEST_CASE("gpu_check passes right kernels and not wrong ones", "[gpu_check]") {
+TEST_CASE("gpu_check passes right kernels and not wrong ones", "[gpu_check][stat][long]") {
     const ScratchFolder folder;
     const std::string pack = (folder / "pack").string(), gpu_check = pack + "/gpu_check";
     const Outcome packed = run_shell(OPAL_SOURCE_DIR "/scripts/gpu_check --opal " OPAL_BINARY " --pack " + pack);
@@ -41,9 +41,7 @@ TEST_CASE("gpu_check passes right kernels and not wrong ones", "[gpu_check]") {
     const std::string sampled = "v3_mul(path->throughput, light_in)";
     const Mutant too_bright = {"sampled light 2 % too bright", "integrators/steps.cl", sampled,
                                "v3_scale(" + sampled + ", (real)(1.02f))"};
-    for (const auto &[file, text] : mutated(opal::Sources::embedded(), too_bright).files)
-        folder.write("cl/" + file, text);
-    check_table(run_shell(as_gpu + gpu_check + " --opal " + opal_with(folder, (folder / "cl").string())), 1,
+    check_table(run_shell(as_gpu + gpu_check + " --opal " + opal_with(folder, write_kernels(folder, too_bright))), 1,
                 {"selftest --quick              WRONG", "floor and light, p, lanes 1, precise",
                  "picture of cbox_mis           WRONG", "NOT all is right"});
 }

@@ -1,5 +1,4 @@
-// With another OpenCL loader in the place of the one that Opal was linked with, the same devices are found and compute
-// the same.
+// Other OpenCL loaders than the one that Opal was linked with find the same devices, which compute the same.
 #include "support/device.h"
 #include "support/scratch.h"
 
@@ -14,7 +13,7 @@ namespace {
 
 struct Answers {
     std::vector<std::string> devices;
-    std::string numbers; // of selftest, which are the same in every run
+    std::string numbers; // the figures of selftest, the same in every run
 };
 
 Answers answers(const std::string &environment) {
@@ -36,7 +35,7 @@ Answers answers(const std::string &environment) {
 
 } // namespace
 
-TEST_CASE("Other OpenCL loaders find the same devices", "[loaders]") {
+TEST_CASE("Other OpenCL loaders find the same devices", "[loaders][skips]") {
     const char *const folders = std::getenv("OPAL_TEST_LOADERS");
     if (!folders) {
         WARN("skipped: OPAL_TEST_LOADERS names no folder that holds another libOpenCL.so.1 (PyPI's nvidia-cuda-opencl "

@@ -234,6 +234,10 @@ const std::vector<Control> densities = {
 
 } // namespace
 
-TEST_CASE("Every mutant of the random numbers is killed", "[mutants]") { require_all_killed(numbers, test_seed(140)); }
-TEST_CASE("Every mutant of the intersection is killed", "[mutants]") { require_all_killed(hits, test_seed(141)); }
-TEST_CASE("Every mutant of what is drawn is killed", "[mutants]") { require_all_killed(densities, test_seed(142)); }
+TEST_CASE("Every mutant of the random numbers is killed", "[mutants][stat]") {
+    require_all_killed(numbers, test_seed(140));
+}
+TEST_CASE("Every mutant of the intersection is killed", "[mutants][stat]") { require_all_killed(hits, test_seed(141)); }
+TEST_CASE("Every mutant of what is drawn is killed", "[mutants][stat]") {
+    require_all_killed(densities, test_seed(142));
+}

@@ -12,9 +12,9 @@ TEST_CASE("Random numbers are the known ones, bit for bit, and never 1", "[numbe
 TEST_CASE("Sobol points lie one in each elementary interval", "[numbers]") {
     require_all_pass(check_sobol(Sources::embedded(), test_seed(100)));
 }
-TEST_CASE("Strata are met once each, in an order of their own", "[numbers]") {
+TEST_CASE("Strata are met once each, in an order of their own", "[numbers][stat]") {
     require_all_pass(check_stratified(Sources::embedded(), test_seed(101)));
 }
-TEST_CASE("Pixels, samples, dimensions and seeds are uncorrelated", "[numbers]") {
+TEST_CASE("Pixels, samples, dimensions and seeds are uncorrelated", "[numbers][stat]") {
     require_all_pass(check_independence(Sources::embedded(), test_seed(102)));
 }

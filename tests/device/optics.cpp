@@ -9,6 +9,6 @@ using namespace opal::test;
 TEST_CASE("Reflectance and refraction follow Fresnel and Snell", "[optics]") {
     require_all_pass(check_refraction(Sources::embedded(), 0));
 }
-TEST_CASE("Sine and cosine of a turn", "[optics]") {
+TEST_CASE("Sine and cosine of a turn", "[optics][stat]") {
     require_all_pass(check_trigonometry(Sources::embedded(), test_seed(130)));
 }

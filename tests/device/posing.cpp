@@ -29,7 +29,7 @@ Outcome as_cpu(const std::string &arguments) { return run("", arguments + " --de
 
 } // namespace
 
-TEST_CASE("A GPU passes the quick selftest", "[posing]") {
+TEST_CASE("A GPU passes the quick selftest", "[posing][stat]") {
     CHECK_THAT(as_gpu("selftest --quick").out, Catch::Contains("passed: ") && !Catch::Contains("!"));
 }
 

@@ -1,4 +1,4 @@
-// Building and running kernels on the device, and what is said when that fails.
+// Building and running kernels on the device, and the messages when that fails.
 #include "support/device.h"
 
 using namespace opal;

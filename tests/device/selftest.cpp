@@ -1,35 +1,32 @@
 // `opal selftest`: right on this device, and a wrong, crashing or hanging driver is reported as such.
-#include "support/scratch.h"
+#include "selftest/selftest.h"
+#include "base/table.h"
+#include "support/device.h"
+#include "support/mutants.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include <cstdlib>
+#include <algorithm>
 
+using namespace opal;
 using namespace opal::test;
 
 namespace {
 
 Outcome selftest(const std::string &arguments) {
-    const char *wanted = std::getenv("OPAL_TEST_DEVICE");
-    return run_shell(std::string(OPAL_BINARY) + " selftest --device " + (wanted ? wanted : "cpu") + " " + arguments);
+    return run_shell(std::string(OPAL_BINARY) + " selftest --device " + wanted_device() + " " + arguments);
 }
 
-// The kernels as a driver would run them that does `to` where `from` is written.
-Outcome selftest_of_mutant(const std::string &group, const std::string &file, const std::string &from,
-                           const std::string &to) {
+// selftest with wrong kernels, as if the driver had compiled the right ones wrongly.
+Outcome selftest_of(const Mutant &mutant, const std::string &group) {
     const ScratchFolder folder;
-    std::filesystem::copy(OPAL_SOURCE_DIR "/cl", folder / "cl", std::filesystem::copy_options::recursive);
-    std::string text = read_text(folder / ("cl/" + file));
-    const size_t place = text.find(from);
-    REQUIRE(place != std::string::npos);
-    folder.write("cl/" + file, text.replace(place, from.size(), to));
-    return selftest("--group " + group + " --time-limit 60 --cl-dir " + (folder / "cl").string());
+    return selftest("--group " + group + " --time-limit 60 --cl-dir " + write_kernels(folder, mutant));
 }
 
 } // namespace
 
-TEST_CASE("This device passes, at both widths and with both kinds of math", "[selftest]") {
+TEST_CASE("This device passes, at both widths and with both kinds of math", "[selftest][stat]") {
     const ScratchFolder folder;
     const Outcome outcome = selftest("--json " + (folder / "out.json").string());
     INFO(outcome.out << outcome.err);
@@ -40,38 +37,54 @@ TEST_CASE("This device passes, at both widths and with both kinds of math", "[se
         CHECK(check.at("passed") == true);
 }
 
-TEST_CASE("What computes wrong is found", "[selftest]") {
-    struct Mutant {
-        const char *group, *file, *from, *to, *found;
+TEST_CASE("What computes wrong is found", "[selftest][stat]") {
+    struct WrongKernel {
+        const char *group, *file, *from, *to;
+        const char *check; // that fails
+        bool one_lane = false;
     };
-    const Mutant mutants[] = {
-        {"basics", "core/math.cl", "R(8.3333333333333333e-03)", "R(8.3233333333333333e-03)", "sin_2pi"},
+    const WrongKernel kernels[] = {
+        {"basics", "core/math.cl", "R(8.3333333333333333e-03)", "R(8.3233333333333333e-03)", "error of sin_2pi"},
         {"basics", "core/rng.cl", "0x53a22864u", "0x53a22865u", "Sobol"},
         {"warps", "core/warp.cl", "sqrt(u.x * (2 - u.x))", "sqrt(u.x)", "warps: samples"},
         {"bsdfs", "bsdfs/microfacet.cl", "(4 * fabs(v3_dot(h, wo)));", "(4.1f * fabs(v3_dot(h, wo)));",
          "BSDFs: samples"},
         {"bsdfs", "bsdfs/dielectric.cl", "square(boundary.inverse_eta)", "boundary.inverse_eta", "mirror, dielectric"},
         {"lights", "emitters/mesh.cl", "folded ? 1 - point.x", "folded ? point.x", "lights: points"},
-        {"rays", "trace/one_lane/walk.cl", "near_x = inverse.x < 0", "near_x = inverse.x > 0", "tree: hits"},
+        {"rays", "trace/one_lane/walk.cl", "near_x = inverse.x < 0", "near_x = inverse.x > 0", "tree: hits", true},
         {"images", "integrators/steps.cl", "wo.z * inverse_pdf", "inverse_pdf", "furnace"},
     };
-    for (const Mutant &m : mutants) {
-        const Outcome outcome = selftest_of_mutant(m.group, m.file, m.from, m.to);
-        INFO(m.file << "\n" << outcome.out << outcome.err);
-        CHECK(outcome.exit_code == 1);
-        const size_t line = outcome.out.find(m.found);
-        REQUIRE(line != std::string::npos);
-        CHECK(outcome.out.substr(line, outcome.out.find('\n', line) - line).find('!') != std::string::npos);
+    for (const WrongKernel &kernel : kernels) {
+        INFO(kernel.file << ": " << kernel.to);
+        const Sources sources = mutated(Sources::embedded(), {kernel.check, kernel.file, kernel.from, kernel.to});
+        SelftestOptions options;
+        options.build.lanes = kernel.one_lane ? 1 : device().info.native_lanes;
+        options.sources = &sources;
+        const Findings findings = find_row(check_groups(), "group", kernel.group).run(device(), options);
+        CHECK(std::any_of(findings.begin(), findings.end(),
+                          [&](const Finding &f) { return f.check.starts_with(kernel.check) && !f.passed; }));
     }
+}
+
+TEST_CASE("The table marks what failed, and the exit code is 1", "[selftest]") {
+    const Outcome outcome = selftest_of({"Sobol", "core/rng.cl", "0x53a22864u", "0x53a22865u"}, "basics");
+    INFO(outcome.out << outcome.err);
+    CHECK(outcome.exit_code == 1);
+    const size_t line = outcome.out.find("Sobol numbers, wrong");
+    REQUIRE(line != std::string::npos);
+    const std::string row = outcome.out.substr(line, outcome.out.find('\n', line) - line);
+    CHECK(size_t(std::count(row.begin(), row.end(), '!')) == 2 * tested_lanes().size()); // precise and fast
+    CHECK_THAT(outcome.out, Catch::Contains("FAILED: "));
 }
 
 TEST_CASE("A crash, a hang and kernels that do not build are told", "[selftest]") {
     const char *const output = "columns[column * stride + base + lane] = (float)lanes[lane];";
-    const Outcome crash = selftest_of_mutant("warps", "kernels/columns.cl", output,
-                                             "*(volatile global float *)(8 + get_global_id(0)) = (float)lanes[lane];");
+    const Outcome crash = selftest_of({"crash", "kernels/columns.cl", output,
+                                       "*(volatile global float *)(8 + get_global_id(0)) = (float)lanes[lane];"},
+                                      "warps");
     CHECK(crash.exit_code == 1);
     CHECK_THAT(crash.out, Catch::Contains("warps at 1 precise: crashed (Segmentation fault)"));
-    const Outcome broken = selftest_of_mutant("warps", "kernels/columns.cl", output, "nothing;");
+    const Outcome broken = selftest_of({"broken", "kernels/columns.cl", output, "nothing;"}, "warps");
     CHECK(broken.exit_code == 1);
     CHECK_THAT(broken.out, Catch::Contains("the kernels do not build"));
     const ScratchFolder folder;

@@ -1,5 +1,4 @@
-// The whole table of `opal extremes` with 2^22 paths a picture, and rays at edges by the hundred million. Of many
-// minutes.
+// The whole table of `opal extremes` with 2^22 paths a picture, and 10^8 rays at edges. It takes many minutes.
 #include "extremes/measure.h"
 #include "support/device.h"
 #include "support/seeds.h"
@@ -7,7 +6,7 @@
 using namespace opal;
 using namespace opal::test;
 
-TEST_CASE("Every row keeps what it promises, and nothing is NaN or infinite", "[every_row]") {
+TEST_CASE("Every row keeps what it promises, and nothing is NaN or infinite", "[every_row][stat][long]") {
     if (!device().info.fp64) {
         WARN("the device has no double precision: nothing to hold single against");
         return;
@@ -24,7 +23,7 @@ TEST_CASE("Every row keeps what it promises, and nothing is NaN or infinite", "[
     }
 }
 
-TEST_CASE("No ray of 1e8 at edges and vertices of closed meshes is lost", "[every_row]") {
+TEST_CASE("No ray of 1e8 at edges and vertices of closed meshes is lost", "[every_row][stat][long]") {
     for (const double scale : {1e-4, 1e-2, 1.0, 1e2, 1e4}) {
         const extremes::StressSettings settings{64, 1024, test_seed(72) + unsigned(std::log10(scale) + 4)};
         INFO("scale " << scale);

@@ -94,9 +94,8 @@ TEST_CASE("The command prints a table, and writes JSON and a plot", "[quick]") {
     if (!doubles())
         return;
     const ScratchFolder folder;
-    const char *wanted = std::getenv("OPAL_TEST_DEVICE");
-    const std::string opal = std::string(OPAL_BINARY) + " extremes --device " + (wanted ? wanted : "cpu") +
-                             " --side 16 --spp 16 --row radiance ";
+    const std::string opal =
+        std::string(OPAL_BINARY) + " extremes --device " + wanted_device() + " --side 16 --spp 16 --row radiance ";
     const Outcome outcome =
         run_shell(opal + "--json " + (folder / "out.json").string() + " --plot " + (folder / "out.svg").string());
     INFO(outcome.out << outcome.err);

@@ -1,4 +1,4 @@
-// The command line: what is printed, and one clear message with exit code 1 for what makes no sense.
+// The command line: its output, and one clear message with exit code 1 for bad input.
 #include "base/command_line.h"
 #include "support/scratch.h"
 

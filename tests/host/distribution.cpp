@@ -14,12 +14,12 @@ using namespace opal;
 
 namespace {
 
-// Upper word of the product, as the device takes rows (cl/emitters/interface.cl).
+// The upper word of the product, by which the device chooses a row.
 unsigned row_of(std::uint64_t number, int bits, std::uint64_t rows) {
     return unsigned((number << (32 - bits)) * rows >> 32);
 }
 
-// How many of the 2^bits numbers lead to each row, found by trying them.
+// How many of the 2^bits numbers lead to each row, by bisection.
 std::vector<double> numbers_of_rows(std::uint64_t rows) {
     const int bits = rows > OPAL_ALIAS_ROWS ? 32 : 24;
     std::vector<double> firsts(rows + 1, std::ldexp(1.0, bits));
@@ -40,7 +40,7 @@ std::vector<double> numbers_of_rows(std::uint64_t rows) {
     return numbers;
 }
 
-// What a draw from the table really gives each index: sums of multiples of 2^-48 or 2^-56, exact in double up to that.
+// The probability that a draw from the table gives each index: a sum of multiples of 2^-48 or 2^-56.
 std::vector<double> drawn(const AliasTable &table) {
     const std::vector<double> row = numbers_of_rows(table.accept.size());
     std::vector<double> probability(table.accept.size());
@@ -51,8 +51,8 @@ std::vector<double> drawn(const AliasTable &table) {
     return probability;
 }
 
-// Whether what is drawn is what the weights ask for, but for roundings: a row has a whole number of numbers, and a
-// row's accept is rounded up by less than 2^-24, at the cost of the index that it gives the rest to.
+// Whether each index is drawn by its weight, but for roundings: a row has a whole number of numbers, and its accept is
+// rounded up by less than 2^-24, at the cost of the index that gets the rest.
 bool near(const AliasTable &table, const std::vector<double> &weights) {
     const double count = double(weights.size()), sum = std::accumulate(weights.begin(), weights.end(), 0.0);
     std::vector<double> roundings(weights.size(), 1);

@@ -1,4 +1,4 @@
-// What is left on the disk when two pictures disagree, and that nothing is where they agree.
+// The evidence of two pictures that disagree, and that none is left where they agree.
 #include "support/evidence.h"
 #include "base/error.h"
 #include "support/scratch.h"
@@ -31,7 +31,7 @@ Image noisy(unsigned seed, float extra) {
     return image;
 }
 
-// $OPAL_EVIDENCE for as long as it lives.
+// Sets $OPAL_EVIDENCE as long as it lives.
 struct EvidenceFolder {
     explicit EvidenceFolder(const fs::path &path) { setenv("OPAL_EVIDENCE", path.c_str(), 1); }
     ~EvidenceFolder() { unsetenv("OPAL_EVIDENCE"); }

@@ -1,4 +1,4 @@
-// What the kernel is compiled with, and the materials that decide it.
+// The features that a kernel is compiled with, and the materials that decide them.
 #include "flatten/features.h"
 #include "support/plain_scenes.h"
 

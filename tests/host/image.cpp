@@ -1,5 +1,4 @@
-// Images and their files: what is written is what is read, and what cannot be written is said, with nothing left
-// behind.
+// Images and their files: reading returns what was written; a failed write is an error and leaves no file.
 #include "base/error.h"
 #include "image/metrics.h"
 #include "support/scratch.h"

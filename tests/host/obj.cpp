@@ -50,20 +50,20 @@ Vec3 area_vector(const TriangleMesh &mesh) {
     return sum;
 }
 
-using Point = std::array<float, 6>; // position and normal of a corner, the normal zero where the face gives none
+using CornerValues = std::array<float, 6>; // position and normal of a corner, the normal zero where the face gives none
 
-std::vector<std::array<Point, 3>> by_tinyobjloader(const std::filesystem::path &file) {
+std::vector<std::array<CornerValues, 3>> by_tinyobjloader(const std::filesystem::path &file) {
     tinyobj::ObjReaderConfig config;
     config.triangulate = false;
     tinyobj::ObjReader reader;
     REQUIRE(reader.ParseFromFile(file.string(), config));
     const tinyobj::attrib_t &all = reader.GetAttrib();
-    std::vector<std::array<Point, 3>> triangles;
+    std::vector<std::array<CornerValues, 3>> triangles;
     for (const tinyobj::shape_t &shape : reader.GetShapes()) {
         auto corner = shape.mesh.indices.begin();
         for (size_t count : shape.mesh.num_face_vertices) {
             std::vector<Vec3> outline;
-            std::vector<Point> points;
+            std::vector<CornerValues> points;
             for (size_t i = 0; i < count; ++i, ++corner) {
                 const float *p = &all.vertices[size_t(corner->vertex_index) * 3];
                 const float *n = corner->normal_index < 0 ? nullptr : &all.normals[size_t(corner->normal_index) * 3];
@@ -78,7 +78,7 @@ std::vector<std::array<Point, 3>> by_tinyobjloader(const std::filesystem::path &
 }
 
 // Positions to an ulp or so of tinyobjloader's own parser, normals as unit vectors.
-bool same_corner(const TriangleMesh &mesh, TriangleMesh::Corner corner, const Point &point) {
+bool same_corner(const TriangleMesh &mesh, TriangleMesh::Corner corner, const CornerValues &point) {
     const Vec3 p = mesh.positions[corner.position], wanted{point[0], point[1], point[2]};
     Vec3 n{point[3], point[4], point[5]};
     const double size = length(n);
@@ -105,7 +105,7 @@ TEST_CASE("well-formed files mean what tinyobjloader reads in them", "[obj]") {
         const auto expected = by_tinyobjloader(file);
         size_t next = 0, found = 0; // those without area are left out of the mesh
         for (const auto &triangle : mesh.triangles) {
-            const auto matches = [&](const std::array<Point, 3> &other) {
+            const auto matches = [&](const std::array<CornerValues, 3> &other) {
                 return same_corner(mesh, triangle[0], other[0]) && same_corner(mesh, triangle[1], other[1]) &&
                        same_corner(mesh, triangle[2], other[2]);
             };

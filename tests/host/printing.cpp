@@ -1,4 +1,4 @@
-// What cannot be printed: a message is lost and nothing else; a result is an error, for it is what the command was for.
+// Output that cannot be written: a lost message costs nothing else; a lost result is an error.
 #include "base/json.h"
 #include "image/image.h"
 #include "support/scratch.h"
@@ -77,7 +77,7 @@ TEST_CASE("Bytes that are not UTF-8 cost no figures", "[printing]") {
     CHECK(dump({{"name", "\xc3\xa4"}}) == "{\"name\":\"\xc3\xa4\"}"); // what is UTF-8 stays
 }
 
-// Else one place more could throw because it cannot print, or lose what it has because of a name.
+// A direct call could throw because it cannot print, or lose a result because of a name.
 TEST_CASE("Only host/base prints, writes JSON and reads files", "[printing]") {
     const auto offends = [](const std::string &line) {
         for (const char *word : {"fmt::print", "std::cout", "std::cerr", ".dump(", "ifstream"})

@@ -1,4 +1,4 @@
-// What is said while a computation runs, and how Ctrl-C is noticed.
+// Progress messages, and how Ctrl-C is noticed.
 #include "base/progress.h"
 #include "base/signals.h"
 

@@ -1,4 +1,4 @@
-// Reading files: what fails on the way is said by name, whoever reads, and never taken for the file's end.
+// Reading files: every reader names a file that cannot be read, and takes no failure for the file's end.
 #include "base/read_file.h"
 #include "image/image.h"
 #include "support/error_of.h"
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A regular file whose first byte cannot be read: address 0 of a process. EIO, as a failing disk has it.
+// A regular file whose first byte (address 0 of a process) cannot be read: EIO, as of a failing disk.
 const char *const unreadable = "/proc/self/mem";
 const std::string reason = ": cannot read: Input/output error";
 
@@ -60,7 +60,7 @@ TEST_CASE("What cannot be read is an error with its name and reason", "[read_fil
 }
 
 TEST_CASE("A file that ends before its size is an error", "[read_file]") {
-    const char *const shorter = "/sys/devices/system/cpu/online"; // the kernel says 4096 bytes of each such file
+    const char *const shorter = "/sys/devices/system/cpu/online"; // the kernel reports 4096 bytes for each such file
     std::error_code error;
     if (fs::file_size(shorter, error) != 4096 || error) {
         WARN("there is no /sys here: a file that ends early is not tried");
@@ -96,7 +96,7 @@ TEST_CASE("A mesh for which memory is short is an error, not a part of it", "[re
 #else
     const ScratchFolder folder;
     const fs::path obj = folder.write("large.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n#");
-    fs::resize_file(obj, 1u << 30); // a comment of zeros, of which the disk holds nothing
+    fs::resize_file(obj, 1u << 30); // a comment of zeros that takes no disk space
     const std::string scene = folder.write("scene.xml", scene_of(obj.string()));
     const Outcome outcome = run_shell("ulimit -v 600000; " OPAL_BINARY " inspect " + scene);
     INFO(outcome.out << outcome.err);

@@ -9,7 +9,7 @@ using opal::test::error_of;
 
 namespace {
 
-// The error that reading `text` as a.xml gives, down to the children of its root.
+// The error of reading `text` as a.xml, with the children of its root.
 std::string error_in(const std::string &text) {
     return error_of([&] { XmlDocument("a.xml", text).root().children(); });
 }

@@ -7,7 +7,7 @@
 using namespace opal;
 using namespace opal::test;
 
-TEST_CASE("A furnace shows emitted / (1 - albedo) in every strategy", "[analytic]") {
+TEST_CASE("A furnace shows emitted / (1 - albedo) in every strategy", "[analytic][stat]") {
     require_all_pass(check_furnace(Sources::embedded(), test_seed(1)));
 }
 
@@ -15,11 +15,11 @@ TEST_CASE("Light in glass is n^2 brighter, sample by sample", "[analytic]") {
     require_all_pass(check_glass_furnace(Sources::embedded(), test_seed(2)));
 }
 
-TEST_CASE("A triangle light over a floor follows Lambert's formula", "[analytic]") {
+TEST_CASE("A triangle light over a floor follows Lambert's formula", "[analytic][stat]") {
     require_all_pass(check_triangle_light(Sources::embedded(), test_seed(3)));
 }
 
-TEST_CASE("A point light follows the inverse square", "[analytic]") {
+TEST_CASE("A point light follows the inverse square", "[analytic][stat]") {
     require_all_pass(check_point_light(Sources::embedded(), test_seed(4)));
 }
 

@@ -1,4 +1,4 @@
-// `opal bench`: the figures are there, and the dumps are what a stranger would trace.
+// `opal bench`: it prints all figures, and its dumped hits are those of its dumped rays and triangles.
 #include "support/scratch.h"
 
 #include <catch2/catch.hpp>
@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 
 using namespace opal::test;
@@ -28,8 +27,7 @@ struct Triangle {
 };
 
 Outcome bench(const std::string &arguments) {
-    const char *wanted = std::getenv("OPAL_TEST_DEVICE");
-    return run_shell(std::string(OPAL_BINARY) + " bench " + arguments + " --device " + (wanted ? wanted : "cpu"));
+    return run_shell(std::string(OPAL_BINARY) + " bench " + arguments + " --device " + wanted_device());
 }
 
 template <class T> std::vector<T> records(const std::filesystem::path &file, size_t skip = 0) {
@@ -73,7 +71,8 @@ Point cross(Point a, Point b) {
 }
 double dot(Point a, Point b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-// Where a ray meets a triangle's plane, and the smallest of the weights there (Moeller and Trumbore 1997, in double).
+// Where a ray meets a triangle's plane, and the smallest barycentric weight there (Moeller and Trumbore 1997, in
+// double).
 struct Meeting {
     double t, u, v, inside;
 };
@@ -85,8 +84,8 @@ Meeting meet(const Ray &ray, const Triangle &p) {
     return {dot(e2, q) / determinant, u, v, std::min({u, v, 1 - u - v})};
 }
 
-// Rays whose answer no rounding explains. Single precision tells about 2e-6 of coordinates up to 1, and 1e-4 of a
-// weight.
+// How many rays have an answer that no rounding explains. Single precision resolves about 2e-6 of coordinates up to 1,
+// and 1e-4 of a weight.
 size_t wrong_hits(const Dump &dump, bool any) {
     size_t wrong = 0;
     for (size_t i = 0; i < dump.rays.size(); i++) {
@@ -127,7 +126,7 @@ TEST_CASE("Dumped hits are those of the dumped rays and triangles, listed and in
             INFO(scene << " " << kind);
             CHECK(dump.rays.size() > 1000);
             CHECK(wrong_hits(dump, kind == "shadow") == 0);
-            // The check itself: an answer moved to another ray is found out.
+            // A control of this check: it finds an answer that was moved to another ray.
             std::rotate(dump.hits.begin(), dump.hits.begin() + 1, dump.hits.end());
             CHECK(wrong_hits(dump, kind == "shadow") > dump.rays.size() / 50);
         }
@@ -237,7 +236,7 @@ TEST_CASE("bench render times the kernel and its variants", "[bench]") {
     REQUIRE(outcome.exit_code == 0);
     const json stats = json::parse(read_text(file));
     CHECK(stats["paths_per_second"]["least"] > 0.0);
-    // A path of the Cornell box has a camera ray and, unless that meets the lamp or nothing, more.
+    // A path of the Cornell box has a camera ray, and more rays unless that one meets the lamp or nothing.
     CHECK((stats["rays_per_path"] > 1.5 && stats["rays_per_path"] < 6.0));
     CHECK((stats["shadow_rays_per_path"] > 0.5 && stats["shadow_rays_per_path"] < stats["rays_per_path"]));
     CHECK((stats["lanes_busy"] > 0.5 && stats["lanes_busy"] <= 1.0));

@@ -29,50 +29,50 @@ Image noisy(double mean, unsigned seed, double samples = 16) {
     return image;
 }
 
-struct Place {
-    ScratchFolder folder;
+struct ImageFolder {
+    ScratchFolder scratch;
     std::string put(const std::string &name, const Image &image) const {
-        write_exr(image, folder / name);
+        write_exr(image, scratch / name);
         return name;
     }
     Outcome compare(const std::string &arguments) const {
-        return run_shell("cd " + folder.path().string() + " && " + OPAL_BINARY + " compare " + arguments);
+        return run_shell("cd " + scratch.path().string() + " && " + OPAL_BINARY + " compare " + arguments);
     }
     nlohmann::json json(const std::string &arguments) const {
         const Outcome outcome = compare(arguments + " --json out.json");
         INFO(outcome.err);
         REQUIRE(outcome.exit_code == 0);
-        return nlohmann::json::parse(read_text(folder / "out.json"));
+        return nlohmann::json::parse(read_text(scratch / "out.json"));
     }
 };
 
 } // namespace
 
 TEST_CASE("Two images of one mean pass, and the figures are those of their noise", "[compare]") {
-    const Place place;
-    place.put("a.exr", noisy(1, 1));
-    place.put("b.exr", noisy(1, 2));
-    const auto report = place.json("a.exr b.exr -o d.exr");
+    const ImageFolder folder;
+    folder.put("a.exr", noisy(1, 1));
+    folder.put("b.exr", noisy(1, 2));
+    const auto report = folder.json("a.exr b.exr -o d.exr");
     CHECK(report["mse"].get<double>() == Approx(0.02).epsilon(0.15)); // two noises of variance 0.01, 2304 values
     CHECK(report["rmse"].get<double>() == Approx(std::sqrt(report["mse"].get<double>())));
     CHECK(report["rel_mse_floor"].get<double>() == Approx(1e-4).epsilon(0.02));
     CHECK_FALSE(report["test"]["differ"].get<bool>());
-    const Image map = read_exr(place.folder / "d.exr");
+    const Image map = read_exr(folder.scratch / "d.exr");
     CHECK(map.get("R").values[5] ==
           Approx(noisy(1, 1).get("R").values[5] - noisy(1, 2).get("R").values[5]).margin(1e-6));
     CHECK(map.find("z.G"));
-    CHECK(std::filesystem::exists(place.folder / "d.png"));
+    CHECK(std::filesystem::exists(folder.scratch / "d.png"));
 }
 
 TEST_CASE("A bright patch is found, with its place", "[compare]") {
-    const Place place;
+    const ImageFolder folder;
     Image bright = noisy(1, 1);
     for (int y = 8; y < 16; y++)
         for (int x = 16; x < 32; x++)
             bright.layers[1].values[size_t(y * 32 + x)] += 0.1f;
-    place.put("a.exr", bright);
-    place.put("b.exr", noisy(1, 2));
-    const auto region = place.json("a.exr b.exr");
+    folder.put("a.exr", bright);
+    folder.put("b.exr", noisy(1, 2));
+    const auto region = folder.json("a.exr b.exr");
     REQUIRE(region["test"]["differ"].get<bool>());
     CHECK(region["test"]["region"]["channel"] == "G");
     CHECK(region["test"]["region"]["x"] == 16);
@@ -83,34 +83,34 @@ TEST_CASE("A bright patch is found, with its place", "[compare]") {
 }
 
 TEST_CASE("An image without variance is compared, and the missing test is told", "[compare]") {
-    const Place place;
+    const ImageFolder folder;
     Image plain = noisy(1, 1);
     plain.layers.resize(3);
-    place.put("plain.exr", plain);
-    place.put("b.exr", noisy(1, 2));
-    place.put("single.exr", noisy(1, 3, 1));
-    CHECK(place.json("b.exr plain.exr")["untested"].get<std::string>().find("plain.exr holds no layer variance.R") ==
+    folder.put("plain.exr", plain);
+    folder.put("b.exr", noisy(1, 2));
+    folder.put("single.exr", noisy(1, 3, 1));
+    CHECK(folder.json("b.exr plain.exr")["untested"].get<std::string>().find("plain.exr holds no layer variance.R") ==
           0);
-    CHECK(place.json("single.exr b.exr")["untested"] == "single.exr has one sample a pixel and so no variance");
-    Image uneven = noisy(1, 4); // as of a render that was stopped
+    CHECK(folder.json("single.exr b.exr")["untested"] == "single.exr has one sample a pixel and so no variance");
+    Image uneven = noisy(1, 4); // as a stopped render has it
     uneven.metadata["opal.single_sample_pixels"] = "7";
-    place.put("uneven.exr", uneven);
-    CHECK(place.json("b.exr uneven.exr")["untested"] == "uneven.exr has 7 pixels with one sample and so no variance");
-    CHECK_FALSE(place.json("plain.exr b.exr").contains("test"));
-    CHECK(place.json("plain.exr plain.exr")["psnr_db"].is_null()); // equal: infinite
+    folder.put("uneven.exr", uneven);
+    CHECK(folder.json("b.exr uneven.exr")["untested"] == "uneven.exr has 7 pixels with one sample and so no variance");
+    CHECK_FALSE(folder.json("plain.exr b.exr").contains("test"));
+    CHECK(folder.json("plain.exr plain.exr")["psnr_db"].is_null()); // equal: infinite
 }
 
 TEST_CASE("What cannot be compared is refused with what differs", "[compare]") {
-    const Place place;
-    place.put("a.exr", noisy(1, 1));
-    place.put(
+    const ImageFolder folder;
+    folder.put("a.exr", noisy(1, 1));
+    folder.put(
         "small.exr",
         Image{8, 4, {{"R", std::vector<float>(32)}, {"G", std::vector<float>(32)}, {"B", std::vector<float>(32)}}, {}});
     Image more = noisy(1, 1);
     more.layers.push_back({"depth", std::vector<float>(32 * 24)});
-    place.put("more.exr", more);
+    folder.put("more.exr", more);
     const auto refused = [&](const std::string &arguments, const std::string &reason) {
-        const Outcome outcome = place.compare(arguments);
+        const Outcome outcome = folder.compare(arguments);
         INFO(arguments << "\n" << outcome.err);
         CHECK(outcome.exit_code == 1);
         CHECK_THAT(outcome.err, Catch::Contains(reason));

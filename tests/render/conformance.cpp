@@ -1,10 +1,8 @@
 // `opal test`: scenes and BSDFs whose means are known in closed form or by quadrature, and kernels that are wrong.
-#include "support/scratch.h"
+#include "support/mutants.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
-
-#include <cstdlib>
 
 using namespace opal::test;
 
@@ -13,25 +11,12 @@ namespace {
 const std::filesystem::path cases = OPAL_SOURCE_DIR "/tests/cases/conformance";
 
 Outcome run_tests(const std::string &arguments) {
-    const char *wanted = std::getenv("OPAL_TEST_DEVICE");
-    return run_shell(std::string(OPAL_BINARY) + " test --device " + (wanted ? wanted : "cpu") + " " + arguments);
-}
-
-// A copy of the kernels in which `from`, which must be there, reads `to`.
-std::string mutant(const ScratchFolder &folder, const std::string &file, const std::string &from,
-                   const std::string &to) {
-    const std::filesystem::path copy = folder / "cl";
-    std::filesystem::copy(OPAL_SOURCE_DIR "/cl", copy, std::filesystem::copy_options::recursive);
-    std::string text = read_text(copy / file);
-    const size_t place = text.find(from);
-    REQUIRE(place != std::string::npos);
-    folder.write("cl/" + file, text.replace(place, from.size(), to));
-    return " --cl-dir " + copy.string();
+    return run_shell(std::string(OPAL_BINARY) + " test --device " + wanted_device() + " " + arguments);
 }
 
 } // namespace
 
-TEST_CASE("All cases of tests/cases/conformance pass", "[conformance]") {
+TEST_CASE("All cases of tests/cases/conformance pass", "[conformance][stat]") {
     std::string files;
     for (const auto &entry : std::filesystem::directory_iterator(cases))
         if (entry.path().extension() == ".xml")
@@ -64,13 +49,13 @@ TEST_CASE("--samples and --significance override the file", "[conformance]") {
     CHECK_THAT(outcome.out, Catch::Contains("level 0.00123"));
 }
 
-TEST_CASE("Wrong kernels are rejected", "[conformance]") {
-    struct Mutant {
+TEST_CASE("Wrong kernels are rejected", "[conformance][stat]") {
+    struct WrongKernel {
         const char *file, *from, *to, *test;
         unsigned samples;
         int exit_code = 1;
     };
-    const Mutant mutants[] = {
+    const WrongKernel kernels[] = {
         {"bsdfs/diffuse.cl", "2 * wo.z", "(wo.z < 2 ? 2 * wo.z : (real)(NAN))", "triangle_light.xml", 100000,
          0},                                                                 // the same
         {"bsdfs/diffuse.cl", "2 * wo.z", "1", "triangle_light.xml", 400000}, // a dropped cosine
@@ -82,10 +67,11 @@ TEST_CASE("Wrong kernels are rejected", "[conformance]") {
         {"bsdfs/phong.cl", "b.base_chance * square_to_cosine_hemisphere_pdf(wo) +",
          "R(1.02) * b.base_chance * square_to_cosine_hemisphere_pdf(wo) +", "chi2_bsdfs.xml", 200000},
     };
-    for (const Mutant &m : mutants) {
+    for (const WrongKernel &m : kernels) {
         const ScratchFolder folder;
-        const Outcome outcome = run_tests((cases / m.test).string() + " --significance 1e-4 --samples " +
-                                          std::to_string(m.samples) + mutant(folder, m.file, m.from, m.to));
+        const Outcome outcome =
+            run_tests((cases / m.test).string() + " --significance 1e-4 --samples " + std::to_string(m.samples) +
+                      " --cl-dir " + write_kernels(folder, {m.to, m.file, m.from, m.to}));
         INFO(m.file << ": " << m.to << "\n" << outcome.out << outcome.err);
         CHECK(outcome.exit_code == m.exit_code);
         CHECK_THAT(outcome.err, !Catch::Contains("error:"));

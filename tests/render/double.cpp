@@ -1,5 +1,5 @@
-// Single against double precision on the same random numbers: the same paths, so that samples differ by rounding alone.
-// And doubles at 1, 4, 8 and 16 lanes: what their rounding changes is below a float.
+// Single against double precision on the same random numbers: both walk the same paths, so that samples differ by
+// rounding alone. Doubles at 1, 4, 8 and 16 lanes differ by less than a float can hold.
 #include "support/device.h"
 #include "support/mutants.h"
 #include "support/pictures.h"
@@ -15,14 +15,14 @@ namespace {
 
 constexpr unsigned spp = 16;
 
-// Each sample by itself: R, G, B of every pixel, sample by sample.
+// Every sample of a render: R, G, B of every pixel, one pass after the other.
 std::vector<double> samples_of(const SceneDescription &scene, MathMode math, int lanes = 0,
                                const Sources &from = Sources::embedded()) {
-    Shot shot;
-    shot.math = math;
-    shot.lanes = lanes;
-    shot.sources = &from;
-    Renderer renderer = renderer_of(scene, shot);
+    RenderSetup setup;
+    setup.math = math;
+    setup.lanes = lanes;
+    setup.sources = &from;
+    Renderer renderer = renderer_of(scene, setup);
     std::vector<double> values;
     for (unsigned sample = 0; sample < spp; sample++) {
         renderer.restart(test_seed(60), sample);
@@ -35,7 +35,7 @@ std::vector<double> samples_of(const SceneDescription &scene, MathMode math, int
     return values;
 }
 
-// Share of the samples that differ by more than `limit` of themselves in a channel.
+// The share of samples of which a channel differs by more than `limit`, relative.
 double share_off(const std::vector<double> &a, const std::vector<double> &b, double limit) {
     size_t off = 0;
     for (size_t i = 0; i < a.size(); i += 3) {
@@ -60,7 +60,7 @@ double relative_difference_of_means(const std::vector<double> &a, const std::vec
 // tree.
 SceneDescription gallery_with_tree() {
     SceneDescription scene = gallery(32, 24);
-    scene.meshes.push_back(made_of(cube({-0.1, 0.2, 0.5}, 0.15), bsdf_record(BSDF_dielectric)));
+    scene.meshes.push_back(made_of(cube({-0.1, 0.2, 0.5}, 0.15), examples::dielectric()));
     return scene;
 }
 
@@ -86,13 +86,14 @@ TEST_CASE("Single precision walks the paths of double precision", "[double]") {
         for (const bool tree : {false, true}) {
             if (tree && how != Overrides{{"lighting", "mis"}})
                 continue;
-            const SceneDescription room = tree ? gallery_with_tree() : gallery(32, 24), scene = with(room, how);
+            const SceneDescription room = tree ? gallery_with_tree() : gallery(32, 24),
+                                   scene = with_strategy(room, how);
             const auto single = samples_of(scene, MathMode::precise),
                        oracle = samples_of(scene, MathMode::double_precision);
             const double off = share_off(single, oracle, 1e-3), means = relative_difference_of_means(single, oracle);
             INFO(how.begin()->second << ", " << room.meshes.size() << " meshes: " << off
                                      << " of the samples off by 1e-3, means by " << means);
-            CHECK(off < 5e-4);   // what a last bit sends elsewhere: an edge, a lobe, a total reflection
+            CHECK(off < 5e-4);   // paths that a last bit sends elsewhere: at an edge, a lobe, a total reflection
             CHECK(means < 2e-4); // a few of those hit a lamp
         }
 }
@@ -105,9 +106,9 @@ TEST_CASE("Doubles at every width agree to far below a float", "[double]") {
         for (int lanes : {4, 8}) {
             const auto many = samples_of(scene, MathMode::double_precision, lanes);
             INFO(lanes << " lanes, " << scene.meshes.size() << " meshes");
-            CHECK(share_off(one, many, 1e-7) < 1e-4); // of 12288: one. Samples are floats, so nearly all are equal
+            CHECK(share_off(one, many, 1e-7) < 1e-4); // one of 12288. Samples are floats, so nearly all are equal
         }
-        // That is not so of singles: these doubles are doubles.
+        // Singles differ more: these doubles are doubles.
         CHECK(share_off(samples_of(scene, MathMode::precise, 1), samples_of(scene, MathMode::precise, 8), 1e-7) > 0.01);
     }
 }

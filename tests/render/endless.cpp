@@ -1,4 +1,4 @@
-// Paths that lose nothing on the way end all the same: roulette must never let a path survive for certain.
+// Paths that lose no energy must end, too: Russian roulette never lets a path survive for certain.
 #include "support/scratch.h"
 
 #include <catch2/catch.hpp>
@@ -40,6 +40,6 @@ TEST_CASE("A path between mirrors ends by roulette", "[endless]") {
         INFO(run.err);
         REQUIRE(run.exit_code == 0);
         CHECK(read_text(folder / "mirrors.json").find("\"mean_luminance\": 0.0,") !=
-              std::string::npos); // nothing leaks in
+              std::string::npos); // no light leaks in
     }
 }

@@ -1,4 +1,4 @@
-// Sums of samples: none is lost, none that is not finite is kept.
+// The film: sums lose no sample, and leave out and count those that are not finite.
 #include "support/checks.h"
 #include "support/device.h"
 #include "support/mutants.h"
@@ -17,7 +17,7 @@ using namespace opal::test;
 
 namespace {
 
-// Every sample of pixels 5, 16, 27, ... of a pass of one sample is NaN or, where `what` says so, infinite.
+// Kernels that make every sample of pixels 5, 16, 27, ... NaN, or infinite where `what` says so.
 Mutant spoiled(const std::string &what) {
     return {"pixels " + what, "kernels/queue.cl", "sample[0] = r[lane];",
             "sample[0] = place[lane] % 11u == 5u ? " + what + " : r[lane];"};
@@ -29,7 +29,7 @@ TEST_CASE("Sums of many samples lose nothing, and leave out what is not finite",
     require_all_pass(check_film(Sources::embedded(), test_seed(40)));
 }
 
-// Samples of noise around a radiance of 1, grey, as many a pixel as `count` says.
+// Grey samples of noise around a radiance of 1, count(p) of them in pixel p.
 TEST_CASE("The error of a film whose pixels differ in their counts is that of its noise", "[film]") {
     constexpr int pixels = 1000, films = 200;
     const auto count = [](int p) { return p % 5 == 0 ? 10u : 1u; }; // a second pass that was stopped after a fifth
@@ -59,15 +59,15 @@ TEST_CASE("The error of a film whose pixels differ in their counts is that of it
 }
 
 TEST_CASE("Invalid samples are counted, placed and left out of the mean", "[film]") {
-    const SceneDescription scene =
-        with(furnace(0.5, 1), {{"lighting", "bsdf"}, {"hemisphere", "cosine"}, {"rr", "off"}, {"max-depth", "3"}});
+    const SceneDescription scene = with_strategy(
+        furnace(0.5, 1), {{"lighting", "bsdf"}, {"hemisphere", "cosine"}, {"rr", "off"}, {"max-depth", "3"}});
     for (const char *what : {"NAN", "INFINITY", "-INFINITY"}) {
         INFO(what);
         const Sources sources = mutated(Sources::embedded(), spoiled(what));
-        Shot shot;
-        shot.sources = &sources;
-        shot.max_pass_samples = 1;
-        const Film film = render(scene, 4, 1, shot);
+        RenderSetup setup;
+        setup.sources = &sources;
+        setup.max_pass_samples = 1;
+        const Film film = render(scene, 4, 1, setup);
         size_t spoiled_pixels = 0;
         for (size_t p = 0; p < film.count.size(); p++) {
             CHECK(film.count[p] == (p % 11 == 5 ? 0u : 4u));
@@ -95,12 +95,12 @@ TEST_CASE("What a BSDF or a light makes of no number ends the path and is counte
     for (const auto &[mutant, lighting] : {std::pair{weight, "bsdf"}, std::pair{light, "emitter"}})
         for (const char *math : {"precise", "fast"}) {
             INFO(mutant.name << ", " << math);
-            const SceneDescription scene =
-                with(furnace(0.5, 1), {{"lighting", lighting}, {"rr", "off"}, {"max-depth", "2"}, {"math", math}});
+            const SceneDescription scene = with_strategy(
+                furnace(0.5, 1), {{"lighting", lighting}, {"rr", "off"}, {"max-depth", "2"}, {"math", math}});
             const Sources sources = mutated(Sources::embedded(), mutant);
-            Shot shot;
-            shot.sources = &sources;
-            const Film film = render(scene, 4, 1, shot);
+            RenderSetup setup;
+            setup.sources = &sources;
+            const Film film = render(scene, 4, 1, setup);
             const size_t samples = 4 * film.count.size();
             CHECK(film.invalid <= samples);
             CHECK(film.invalid >=

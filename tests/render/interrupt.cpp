@@ -1,4 +1,4 @@
-// Ctrl-C: the binary writes what it has, says how much that is, and exits with a code of its own.
+// Ctrl-C: the binary writes the image so far, tells how many samples it has, and exits with a code of its own.
 #include "base/signals.h"
 #include "image/image.h"
 #include "support/device.h"
@@ -18,7 +18,7 @@ using namespace opal::test;
 
 namespace {
 
-// CPU seconds of a process, of all its threads.
+// CPU seconds that all threads of a process have taken.
 double cpu_seconds(const std::string &process) {
     std::ifstream stat("/proc/" + process + "/stat");
     std::string word;
@@ -53,7 +53,7 @@ TEST_CASE("An interrupted first pass tells of the pixels without a sample, and c
         WARN("not tested: one launch holds the whole image here");
         return;
     }
-    // 32 launches of long paths, some 20 CPU seconds. Compiled before, so that what takes CPU time is rendering.
+    // 32 launches of long paths, some 20 CPU seconds. The kernel is compiled before, so that CPU time is rendering.
     const std::string render = OPAL_SOURCE_DIR "/scenes/furnace.xml --rr off --max-depth 100 --no-png";
     REQUIRE(run_shell(OPAL_BINARY " " + render + " --width 8 --spp 1 -o /dev/null").exit_code == 0);
     for (const std::string rule : {"", " --target-error 10%", " --time 1h"}) {
@@ -83,8 +83,8 @@ TEST_CASE("An interrupted first pass tells of the pixels without a sample, and c
 TEST_CASE("An interrupted render leaves an image of the samples it finished", "[interrupt]") {
     const ScratchFolder folder;
     const std::string exr = folder / "out.exr", said = folder / "said.txt";
-    // Interrupted once its progress shows that it renders; stopped by force should it not end. A shell's background job
-    // ignores SIGINT unless it asks for it, as Opal does.
+    // The shell interrupts Opal once its progress shows that it renders, and kills it should it not end. A shell's
+    // background job ignores SIGINT unless it asks for it, as Opal does.
     const Outcome outcome = run_shell("timeout -k 1 120 " OPAL_BINARY " render " OPAL_SOURCE_DIR
                                       "/scenes/furnace.xml --width 64 --height 64 --spp 100000000 --no-png -o " +
                                       exr + " > " + said +

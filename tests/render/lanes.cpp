@@ -37,16 +37,16 @@ Difference difference(const Film &a, const Film &b) {
 }
 
 Film at_lanes(const SceneDescription &scene, int lanes, MathMode math = MathMode::precise) {
-    Shot shot;
-    shot.lanes = lanes;
-    shot.math = math;
-    return render(scene, 8, test_seed(50), shot);
+    RenderSetup setup;
+    setup.lanes = lanes;
+    setup.math = math;
+    return render(scene, 8, test_seed(50), setup);
 }
 
 // The gallery with another cube of glass is too large to do without a tree at any width.
 SceneDescription large_gallery(int width, int height) {
     SceneDescription scene = gallery(width, height);
-    scene.meshes.push_back(made_of(cube({-0.1, 0.2, 0.5}, 0.15), bsdf_record(BSDF_dielectric)));
+    scene.meshes.push_back(made_of(cube({-0.1, 0.2, 0.5}, 0.15), examples::dielectric()));
     return scene;
 }
 
@@ -57,7 +57,7 @@ SceneDescription strategy_of(SceneDescription scene, const Overrides &how) {
             const auto *shape = std::get_if<Parallelogram>(&mesh.shape);
             return shape && shape->origin.y == 1;
         });
-    return with(std::move(scene), how);
+    return with_strategy(std::move(scene), how);
 }
 
 } // namespace
@@ -91,7 +91,7 @@ TEST_CASE("The same picture at every width, in every integrator", "[lanes]") {
 }
 
 TEST_CASE("The same picture at every width without a tree, and by the tree", "[lanes]") {
-    const SceneDescription scene = with(gallery(25, 21), {{"mis", "power"}});
+    const SceneDescription scene = with_strategy(gallery(25, 21), {{"mis", "power"}});
     const Film one = at_lanes(scene, 1);
     for (int lanes : {4, 8, 16}) {
         const FlatScene flat = flatten(scene, lanes);

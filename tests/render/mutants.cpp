@@ -171,7 +171,7 @@ const std::vector<Control> films = {
 
 } // namespace
 
-TEST_CASE("A mutant whose text is not there is an error", "[mutants]") {
+TEST_CASE("A mutant whose text is not there is an error", "[mutants][long]") {
     const Mutant mutant{"none", "core/math.cl", "no such text", ""};
     CHECK_THROWS_WITH(mutated(Sources::embedded(), mutant),
                       Catch::Contains("mutant \"none\"") && Catch::Contains("cl/core/math.cl"));
@@ -179,8 +179,16 @@ TEST_CASE("A mutant whose text is not there is an error", "[mutants]") {
     CHECK_THROWS_AS(mutated(Sources::embedded(), {"nowhere", "maths.cl", "real", ""}), Error);
 }
 
-TEST_CASE("Every mutant that furnaces show is killed", "[mutants]") { require_all_killed(furnaces, test_seed(30)); }
-TEST_CASE("Every mutant of the lights is killed", "[mutants]") { require_all_killed(lights, test_seed(31)); }
-TEST_CASE("Every mutant of the strategies is killed", "[mutants]") { require_all_killed(strategies, test_seed(32)); }
-TEST_CASE("Every mutant of discrete choices is killed", "[mutants]") { require_all_killed(choices, test_seed(34)); }
-TEST_CASE("Every mutant of the film is killed", "[mutants]") { require_all_killed(films, test_seed(33)); }
+TEST_CASE("Every mutant that furnaces show is killed", "[mutants][stat][long]") {
+    require_all_killed(furnaces, test_seed(30));
+}
+TEST_CASE("Every mutant of the lights is killed", "[mutants][stat][long]") {
+    require_all_killed(lights, test_seed(31));
+}
+TEST_CASE("Every mutant of the strategies is killed", "[mutants][stat][long]") {
+    require_all_killed(strategies, test_seed(32));
+}
+TEST_CASE("Every mutant of discrete choices is killed", "[mutants][stat][long]") {
+    require_all_killed(choices, test_seed(34));
+}
+TEST_CASE("Every mutant of the film is killed", "[mutants][stat][long]") { require_all_killed(films, test_seed(33)); }

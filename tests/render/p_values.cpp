@@ -1,4 +1,4 @@
-// The suite's own p-values: uniform where nothing is wrong, or its verdicts mean nothing.
+// The p-values of the tests themselves: they must be uniform where nothing is wrong.
 #include "stats/hypothesis.h"
 #include "support/device.h"
 #include "support/evidence.h"
@@ -12,17 +12,18 @@ using namespace opal::test;
 
 namespace {
 
-// Of comparisons that are independent of each other and by continuous statistics: not the exact ones, and not Sobol's,
-// whose error is smaller than the variance says.
+// Adds the p-values of independent comparisons by continuous statistics. Sobol's are left out: his numbers' error is
+// smaller than the variance says.
 void add(std::vector<double> &values, const Findings &findings) {
     for (const Finding &finding : findings)
-        if (finding.p > 0 && finding.p < 1 && finding.what.find("sobol") == std::string::npos)
-            values.push_back(finding.p);
+        if (finding.kind == FigureKind::p_value && finding.figure > 0 && finding.figure < 1 &&
+            finding.check.find("sobol") == std::string::npos)
+            values.push_back(finding.figure);
 }
 
 } // namespace
 
-TEST_CASE("The p-values of the suite are uniform", "[p_values]") {
+TEST_CASE("The p-values of the suite are uniform", "[p_values][stat]") {
     const Sources &sources = Sources::embedded();
     std::vector<double> values;
     for (unsigned round = 0; round < 3; round++) {
@@ -37,15 +38,15 @@ TEST_CASE("The p-values of the suite are uniform", "[p_values]") {
     CHECK(result.p_value >= check_level);
 }
 
-// What verify and compare say of one strategy against itself.
-TEST_CASE("Two seeds of one strategy are not declared different more often than stated", "[p_values]") {
+// The test of images that verify and compare use, on two renders by one strategy.
+TEST_CASE("Two seeds of one strategy are not declared different more often than stated", "[p_values][stat]") {
     constexpr unsigned spp = 32;
     constexpr int pairs = 100;
     const Overrides how = GENERATE(Overrides{{"lighting", "bsdf"}}, Overrides{{"lighting", "emitter"}},
                                    Overrides{{"lighting", "mis"}, {"mis", "power"}},
                                    Overrides{{"lighting", "mis"}, {"sampler", "sobol"}});
     CAPTURE(how.begin()->second, how.rbegin()->second);
-    SceneDescription scene = with(gallery(), how);
+    SceneDescription scene = with_strategy(gallery(), how);
     scene.strategy.max_depth = 6;
     Renderer renderer = renderer_of(scene);
     const auto picture = [&](unsigned seed) {

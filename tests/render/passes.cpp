@@ -1,5 +1,4 @@
-// What is rendered does not depend on how the samples are cut into passes and launches, nor on where a render was
-// stopped.
+// A render's samples do not depend on how they are cut into passes and launches, nor on where a render was stopped.
 #include "support/device.h"
 #include "support/pictures.h"
 #include "support/rooms.h"
@@ -23,9 +22,9 @@ bool same_bits(const Film &a, const Film &b) {
 }
 
 Film in_passes(const SceneDescription &scene, unsigned spp, unsigned most) {
-    Shot shot;
-    shot.max_pass_samples = most;
-    return render(scene, spp, test_seed(20), shot);
+    RenderSetup setup;
+    setup.max_pass_samples = most;
+    return render(scene, spp, test_seed(20), setup);
 }
 
 } // namespace
@@ -33,7 +32,7 @@ Film in_passes(const SceneDescription &scene, unsigned spp, unsigned most) {
 TEST_CASE("Passes cut differently give the same bits", "[passes]") {
     for (const auto &[sampler, filter] :
          {std::pair{"independent", Filter{}}, {"stratified", Filter{FILTER_gaussian, 2, 0.5}}, {"sobol", Filter{}}}) {
-        SceneDescription scene = with(gallery(13, 9), {{"sampler", sampler}});
+        SceneDescription scene = with_strategy(gallery(13, 9), {{"sampler", sampler}});
         scene.camera.filter = filter;
         scene.spp = 23;
         const Film whole = in_passes(scene, 23, 0);
@@ -69,7 +68,7 @@ TEST_CASE("Samples rendered in two goes are those of one", "[passes]") {
 }
 
 TEST_CASE("A first pass that is stopped has its samples all over the image", "[passes]") {
-    SceneDescription large = with(gallery(1200, 1200), {{"integrator", "normals"}});
+    SceneDescription large = with_strategy(gallery(1200, 1200), {{"integrator", "normals"}});
     Renderer renderer = renderer_of(large);
     renderer.restart(1);
     if (renderer.render(1, [](double samples, double) { return samples < 0.25; })) {
@@ -90,9 +89,9 @@ TEST_CASE("A first pass that is stopped has its samples all over the image", "[p
     CHECK(statistics.mean_luminance == Approx(statistics_of(render(large, 1, 1)).mean_luminance).epsilon(0.05));
 }
 
-// Large enough for several launches a pass, so that a pass can stop in its middle.
+// The image is large enough for several launches a pass, so that a pass can stop in its middle.
 TEST_CASE("A render that is stopped midway holds the first samples of each pixel, and counts them", "[passes]") {
-    SceneDescription large = with(furnace(0.5, 1), {{"integrator", "normals"}});
+    SceneDescription large = with_strategy(furnace(0.5, 1), {{"integrator", "normals"}});
     large.camera = camera({0.1, 0.2, -0.3}, {0.3, 0, 1}, 256, 200, 70);
     Renderer renderer = renderer_of(large);
     const unsigned seed = test_seed(21);
@@ -129,7 +128,7 @@ TEST_CASE("A render that is stopped midway holds the first samples of each pixel
     const FilmStatistics statistics = statistics_of(stopped);
     CHECK(statistics.samples == samples);
     CHECK(double(samples) / double(stopped.count.size()) == Approx(done).epsilon(0.05));
-    // A mean over the pixels that have samples: not dark for those that have none.
+    // The mean is over the pixels that have samples: those without do not darken it.
     const FilmStatistics full = statistics_of(render(large, 4, seed));
     CHECK(statistics.mean_luminance == Approx(full.mean_luminance).epsilon(0.2));
 }

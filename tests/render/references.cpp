@@ -24,7 +24,7 @@ constexpr double reference_samples = 48 * 128, reference_dof = 47; // 48 batches
 
 } // namespace
 
-TEST_CASE("Pictures are those of the references, tile by tile", "[references]") {
+TEST_CASE("Pictures are those of the references, tile by tile", "[references][stat]") {
     if (!std::filesystem::exists(shared / "references/means.json")) {
         WARN("skipped: " << shared.string() << "/references is not there");
         return;
@@ -43,7 +43,7 @@ TEST_CASE("Pictures are those of the references, tile by tile", "[references]") 
         scene.camera.height = row["size"][1];
         // By the strategy of the least noise: a few thousand samples a tile that hardly ever meet a light prove
         // nothing.
-        scene = with(scene, {{"lighting", "mis"}, {"mis", "power"}});
+        scene = with_strategy(scene, {{"lighting", "mis"}, {"mis", "power"}});
         scene.spp = spp;
         const Film film = render(scene, spp, test_seed(300));
         INFO(name);
@@ -58,7 +58,7 @@ TEST_CASE("Pictures are those of the references, tile by tile", "[references]") 
 }
 
 // A negative control: a picture 3 % too bright in one corner is found, and the evidence of it written.
-TEST_CASE("A picture that is off is found and its evidence left", "[references]") {
+TEST_CASE("A picture that is off is found and its evidence left", "[references][stat]") {
     const ScratchFolder folder;
     const std::filesystem::path file = shared / "references/importance_diffuse-cbox_pt_nee.exr";
     if (!std::filesystem::exists(file)) {

@@ -1,6 +1,6 @@
 // `opal render` as its users meet it: files, statistics, refusals, Ctrl-C.
 #include "image/image.h"
-#include "support/scratch.h"
+#include "support/mutants.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -14,8 +14,7 @@ using namespace opal::test;
 
 namespace {
 
-// A camera that looks at a light of radiance (1, 2, 3) filling the view: the image is that colour, whatever the
-// strategy.
+// A light of radiance (1, 2, 3) that fills the view: the image has that colour, whatever the strategy.
 const char *const scene_text = R"(<scene>
   <integrator type="path_mis"/>
   <sampler type="independent"><integer name="sampleCount" value="4"/></sampler>
@@ -28,52 +27,41 @@ const char *const scene_text = R"(<scene>
 </scene>
 )";
 
-struct Place {
-    ScratchFolder folder;
-    std::string scene = folder.write("plain.xml", scene_text).string();
+struct SceneFolder {
+    ScratchFolder scratch;
+    std::string scene = scratch.write("plain.xml", scene_text).string();
     std::string render(const std::string &arguments) const {
-        return "cd " + folder.path().string() + " && " + OPAL_BINARY + " " + scene + " " + arguments;
+        return "cd " + scratch.path().string() + " && " + OPAL_BINARY + " " + scene + " " + arguments;
     }
     size_t files() const {
-        const std::filesystem::directory_iterator begin(folder.path());
+        const std::filesystem::directory_iterator begin(scratch.path());
         return static_cast<size_t>(std::distance(begin, std::filesystem::directory_iterator()));
     }
 };
 
-// A copy of cl/ in which `to` is written where `from` was first.
-std::string changed_kernels(const ScratchFolder &folder, const std::string &file, const std::string &from,
-                            const std::string &to) {
-    std::filesystem::copy(OPAL_SOURCE_DIR "/cl", folder / "cl", std::filesystem::copy_options::recursive);
-    std::string text = read_text(folder / ("cl/" + file));
-    const size_t place = text.find(from);
-    REQUIRE(place != std::string::npos);
-    folder.write("cl/" + file, text.replace(place, from.size(), to));
-    return (folder / "cl").string();
-}
-
-void check_refused(const Place &place, const std::string &arguments, const std::string &reason) {
-    const Outcome outcome = run_shell(place.render(arguments));
+void check_refused(const SceneFolder &folder, const std::string &arguments, const std::string &reason) {
+    const Outcome outcome = run_shell(folder.render(arguments));
     INFO(arguments << "\n" << outcome.err);
     CHECK(outcome.exit_code == 1);
     CHECK_THAT(outcome.err, Catch::Contains("error: ") && Catch::Contains(reason));
-    CHECK(place.files() == 1); // the scene
+    CHECK(folder.files() == 1); // the scene
 }
 
 } // namespace
 
 TEST_CASE("A render leaves EXR and PNG in the current folder, named after the scene", "[render_command]") {
-    const Place place;
-    const Outcome outcome = run_shell(place.render("--quiet --json stats.json --layers variance"));
+    const SceneFolder folder;
+    const Outcome outcome = run_shell(folder.render("--quiet --json stats.json --layers variance"));
     INFO(outcome.err);
     REQUIRE(outcome.exit_code == 0);
     CHECK(outcome.err.empty());
-    const Image image = read_exr(place.folder / "plain.exr");
+    const Image image = read_exr(folder.scratch / "plain.exr");
     CHECK(image.width == 24);
     CHECK(image.height == 12);
     CHECK(image.get("G").values.front() == Approx(2).epsilon(1e-6));
     CHECK(image.get("variance.B").values.front() == Approx(0).margin(1e-9));
-    CHECK(std::filesystem::exists(place.folder / "plain.png"));
-    const auto stats = nlohmann::json::parse(read_text(place.folder / "stats.json"));
+    CHECK(std::filesystem::exists(folder.scratch / "plain.png"));
+    const auto stats = nlohmann::json::parse(read_text(folder.scratch / "stats.json"));
     for (const char *key :
          {"scene", "device", "driver", "lanes", "strategy", "width", "height", "spp", "seed", "mean_rgb",
           "mean_luminance", "stderr_luminance", "invalid_samples", "samples_per_second", "seconds"})
@@ -86,62 +74,62 @@ TEST_CASE("A render leaves EXR and PNG in the current folder, named after the sc
 }
 
 TEST_CASE("Size, samples and output are the command line's where given", "[render_command]") {
-    const Place place;
-    REQUIRE(run_shell(place.render("-o out.exr --no-png --width 8 --spp 1 --lanes 1")).exit_code == 0);
-    CHECK(read_exr(place.folder / "out.exr").height == 4); // the scene's aspect
-    CHECK(place.files() == 2);
+    const SceneFolder folder;
+    REQUIRE(run_shell(folder.render("-o out.exr --no-png --width 8 --spp 1 --lanes 1")).exit_code == 0);
+    CHECK(read_exr(folder.scratch / "out.exr").height == 4); // the scene's aspect
+    CHECK(folder.files() == 2);
 }
 
 TEST_CASE("What cannot be rendered or written is refused, and nothing is left behind", "[render_command]") {
-    const Place place;
-    check_refused(place, "--spp 0", "--spp");
-    check_refused(place, "--width 0", "--width");
-    check_refused(place, "--device 99", "no OpenCL device \"99\"; available: 0 (");
-    check_refused(place, "-o none/out.exr", "there is no folder none");
-    check_refused(place, "-o out.png", "names the EXR file");
-    check_refused(place, "--no-png -o /dev/full", "No space left on device");
-    check_refused(place, "--width 65535 --height 65535", "no room for the film and its samples: ");
-    check_refused(place, "--lanes 3", "unknown lanes '3'; available: auto, 1, 4, 8, 16");
-    check_refused(place, "--lighting bsdf --mis one-sample", "makes no sense");
+    const SceneFolder folder;
+    check_refused(folder, "--spp 0", "--spp");
+    check_refused(folder, "--width 0", "--width");
+    check_refused(folder, "--device 99", "no OpenCL device \"99\"; available: 0 (");
+    check_refused(folder, "-o none/out.exr", "there is no folder none");
+    check_refused(folder, "-o out.png", "names the EXR file");
+    check_refused(folder, "--no-png -o /dev/full", "No space left on device");
+    check_refused(folder, "--width 65535 --height 65535", "no room for the film and its samples: ");
+    check_refused(folder, "--lanes 3", "unknown lanes '3'; available: auto, 1, 4, 8, 16");
+    check_refused(folder, "--lighting bsdf --mis one-sample", "makes no sense");
 }
 
 TEST_CASE("A message that cannot be printed costs neither image nor JSON", "[render_command]") {
     for (const char *streams : {"2>/dev/full", "2>&-", ">/dev/full", ">&-", "<&- >&- 2>&-", "2>&1 | true"}) {
         INFO(streams);
-        const Place place;
-        CHECK(run_shell(place.render(std::string("--json stats.json ") + streams)).exit_code == 0);
-        CHECK(place.files() == 4); // with the scene, and nothing else
-        CHECK(read_exr(place.folder / "plain.exr").get("R").values.front() == Approx(1).epsilon(1e-6));
-        CHECK(nlohmann::json::parse(read_text(place.folder / "stats.json"))["spp"] == 4);
+        const SceneFolder folder;
+        CHECK(run_shell(folder.render(std::string("--json stats.json ") + streams)).exit_code == 0);
+        CHECK(folder.files() == 4); // with the scene, and nothing else
+        CHECK(read_exr(folder.scratch / "plain.exr").get("R").values.front() == Approx(1).epsilon(1e-6));
+        CHECK(nlohmann::json::parse(read_text(folder.scratch / "stats.json"))["spp"] == 4);
     }
 }
 
 TEST_CASE("Names of any bytes keep the image and the JSON", "[render_command]") {
-    Place place;
-    place.folder.write(
+    SceneFolder folder;
+    folder.scratch.write(
         "k\344se.obj",
         "v -1 -1 4\nv 1 -1 4\nv 0 1 4\nf 1 2 3\nf 1 1 2\n"); // the second has no area: a warning names it
     std::string text = scene_text;
     text.insert(text.find("</scene>"), "<mesh type=\"obj\"><string name=\"filename\" value=\"k\344se.obj\"/></mesh>\n");
-    place.scene = place.folder.write("sz\344ne.xml", text);
-    const Outcome outcome = run_shell(place.render("-o b\344r.exr --json stats.json"));
+    folder.scene = folder.scratch.write("sz\344ne.xml", text);
+    const Outcome outcome = run_shell(folder.render("-o b\344r.exr --json stats.json"));
     INFO(outcome.err);
     REQUIRE(outcome.exit_code == 0);
-    const auto stats = nlohmann::json::parse(read_text(place.folder / "stats.json"));
+    const auto stats = nlohmann::json::parse(read_text(folder.scratch / "stats.json"));
     CHECK_THAT(stats["scene"].get<std::string>(), Catch::EndsWith("sz\uFFFDne.xml"));
     CHECK_THAT(stats["warnings"][0].get<std::string>(), Catch::Contains("k\uFFFDse.obj: dropped 1 triangles"));
-    const Image image = read_exr(place.folder / "b\344r.exr");
-    CHECK(image.metadata.at("opal.scene") == place.scene); // the bytes themselves
+    const Image image = read_exr(folder.scratch / "b\344r.exr");
+    CHECK(image.metadata.at("opal.scene") == folder.scene); // the bytes themselves
     CHECK_THAT(image.metadata.at("opal.warnings"), Catch::Contains("k\uFFFDse.obj"));
 }
 
 TEST_CASE("Ctrl-C writes what there is and exits with a code of its own", "[render_command]") {
-    const Place place;
-    const std::string started = place.folder / "started";
+    const SceneFolder folder;
+    const std::string started = folder.scratch / "started";
     // The shell tells its process id, then becomes opal.
     const std::string command = "echo $$ >" + started + ".tmp && mv " + started + ".tmp " + started + " && exec " +
-                                OPAL_BINARY + " " + place.scene + " --spp 1000000000 -o " +
-                                (place.folder / "out.exr").string();
+                                OPAL_BINARY + " " + folder.scene + " --spp 1000000000 -o " +
+                                (folder.scratch / "out.exr").string();
     Outcome outcome;
     std::thread render([&] { outcome = run_shell("sh -c '" + command + "'"); });
     while (!std::filesystem::exists(started))
@@ -153,41 +141,43 @@ TEST_CASE("Ctrl-C writes what there is and exits with a code of its own", "[rend
     render.join();
     CHECK(outcome.exit_code == 130);
     CHECK_THAT(outcome.err, Catch::Contains("warning: interrupted: the image holds "));
-    CHECK(read_exr(place.folder / "out.exr").get("R").values.front() == Approx(1).epsilon(1e-4));
+    CHECK(read_exr(folder.scratch / "out.exr").get("R").values.front() == Approx(1).epsilon(1e-4));
 }
 
 TEST_CASE("What a driver remarks on the kernels is no error, and told by --verbose", "[render_command]") {
-    const Place place;
-    const ScratchFolder folder;
-    // The typedef makes the text another one: PoCL's cache, which keeps what was said, does not see directives.
-    const std::string remark = "a remark of the test",
-                      text = "#warning " + remark + "\ntypedef int a_remark_of_the_test;\n#include";
-    const std::string arguments = "--no-png --cl-dir " + changed_kernels(folder, "kernels/render.cl", "#include", text);
-    const Outcome told = run_shell("export OPAL_KERNEL_FLAGS= && " + place.render("--verbose " + arguments));
+    const SceneFolder folder;
+    const ScratchFolder kernels;
+    // PoCL caches a build with its remarks, by the text without directives: the typedef makes that text a new one.
+    const std::string remark = "a remark of the test";
+    Sources sources = Sources::embedded();
+    sources.files["kernels/render.cl"].insert(0, "#warning " + remark + "\ntypedef int a_remark_of_the_test;\n");
+    const std::string arguments = "--no-png --cl-dir " + write_kernels(kernels, sources);
+    const Outcome told = run_shell("export OPAL_KERNEL_FLAGS= && " + folder.render("--verbose " + arguments));
     INFO(told.err);
     CHECK(told.exit_code == 0);
     CHECK_THAT(told.err, Catch::Contains(remark) && Catch::Contains("-cl-std=CL1.2"));
-    const Outcome plain = run_shell("export OPAL_KERNEL_FLAGS= && " + place.render(arguments));
+    const Outcome plain = run_shell("export OPAL_KERNEL_FLAGS= && " + folder.render(arguments));
     CHECK(plain.exit_code == 0);
     CHECK_THAT(plain.err, !Catch::Contains(remark));
-    const Outcome strict = run_shell(place.render(arguments));
+    const Outcome strict = run_shell(folder.render(arguments));
     CHECK(strict.exit_code == 1);
     CHECK_THAT(strict.err, Catch::Contains(remark) && Catch::Contains("the kernels do not build"));
 }
 
 TEST_CASE("Fast math warns where its functions are coarse, and only there", "[render_command]") {
-    const Place place;
+    const SceneFolder folder;
     const auto warned = [](const Outcome &outcome) {
         INFO(outcome.err);
         CHECK(outcome.exit_code == 0);
         return outcome.err.find("warning: --math fast: ") != std::string::npos;
     };
-    CHECK_FALSE(warned(run_shell(place.render("--math fast"))));
-    const ScratchFolder folder;
-    const std::string coarse = " --cl-dir " + changed_kernels(folder, "kernels/selftest_list.h", "MATH(exp, exp(x)",
-                                                              "MATH(exp, exp(x) * (real)(1.0005)");
-    const Outcome fast = run_shell(place.render("--math fast" + coarse));
+    CHECK_FALSE(warned(run_shell(folder.render("--math fast"))));
+    const ScratchFolder kernels;
+    const std::string coarse =
+        " --cl-dir " + write_kernels(kernels, {"exp off by 0.05 %", "kernels/selftest_list.h", "MATH(exp, exp(x)",
+                                               "MATH(exp, exp(x) * (real)(1.0005)"});
+    const Outcome fast = run_shell(folder.render("--math fast" + coarse));
     CHECK(warned(fast));
     CHECK_THAT(fast.err, Catch::Contains("error of exp, ulp") && !Catch::Contains("error of log"));
-    CHECK_FALSE(warned(run_shell(place.render("--math precise" + coarse))));
+    CHECK_FALSE(warned(run_shell(folder.render("--math precise" + coarse))));
 }

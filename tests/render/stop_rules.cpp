@@ -1,4 +1,5 @@
-// `render --time` and `--target-error`: what they reach, that they stay unbiased, and that the stated interval covers.
+// `render --time` and `--target-error`: they stop where they say, stay unbiased, and state intervals that cover the
+// truth.
 #include "render/stop_rules.h"
 
 #include "base/units.h"
@@ -44,7 +45,7 @@ struct Rendering {
 
 } // namespace
 
-TEST_CASE("The interval of --target-error covers the true mean as often as it says", "[stop_rules]") {
+TEST_CASE("The interval of --target-error covers the true mean as often as it says", "[stop_rules][stat]") {
     Rendering r;
     const FilmStatistics truth = r.until({}, test_seed(1), 1 << 17);
     constexpr double target = 0.05;

@@ -1,6 +1,6 @@
-// Every strategy against every other on one scene: Welch's test per tile and on the whole (the evidence of what
-// disagrees stays in evidence/), by the specialised kernels that a user gets. check_agreement does the same in the
-// general one.
+// Every strategy against every other on one scene, by the specialised kernels that a user gets: Welch's test per tile
+// and on the whole image. Images that disagree stay in evidence/. check_agreement does the same with the general
+// kernel.
 #include "stats/hypothesis.h"
 #include "support/checks.h"
 #include "support/device.h"
@@ -26,7 +26,7 @@ std::string name_of(const Overrides &how) {
 void require_agreement(const SceneDescription &scene, unsigned spp, const std::vector<Overrides> &strategies) {
     std::vector<Image> images;
     for (const Overrides &how : strategies) {
-        SceneDescription chosen = with(scene, how);
+        SceneDescription chosen = with_strategy(scene, how);
         chosen.spp = spp;
         const Film film = render(chosen, spp, test_seed(200 + unsigned(images.size())));
         INFO(name_of(how));
@@ -46,11 +46,11 @@ void require_agreement(const SceneDescription &scene, unsigned spp, const std::v
 
 } // namespace
 
-TEST_CASE("Strategies of one expectation agree in the general kernel", "[strategies]") {
+TEST_CASE("Strategies of one expectation agree in the general kernel", "[strategies][stat]") {
     require_all_pass(check_agreement(Sources::embedded(), test_seed(10)));
 }
 
-TEST_CASE("All ways to trace paths give one picture", "[strategies]") {
+TEST_CASE("All ways to trace paths give one picture", "[strategies][stat]") {
     SceneDescription scene = gallery();
     scene.strategy.max_depth = 8; // so that --rr off ends, in a closed room
     require_agreement(
@@ -71,7 +71,7 @@ TEST_CASE("All ways to trace paths give one picture", "[strategies]") {
          {{"lighting", "mis"}, {"math", "fast"}, {"rr", "throughput"}}});
 }
 
-TEST_CASE("All ways to gather direct light give one picture", "[strategies]") {
+TEST_CASE("All ways to gather direct light give one picture", "[strategies][stat]") {
     require_agreement(
         matte_gallery(), 128,
         {{{"integrator", "direct_lighting"}, {"lighting", "bsdf"}, {"hemisphere", "cosine"}},

@@ -10,7 +10,7 @@ using namespace opal::test;
 
 namespace {
 
-// A floor under a lamp, which BSDF samples find seldom.
+// A floor under a small lamp, which BSDF samples seldom find.
 const char *const scene_text = R"(<scene>
   <integrator type="path_mis"><integer name="maxDepth" value="2"/></integrator>
   <camera type="perspective"><integer name="width" value="24"/><integer name="height" value="16"/></camera>
@@ -25,13 +25,13 @@ const char *const scene_text = R"(<scene>
 </scene>
 )";
 
-struct Place {
-    ScratchFolder folder;
-    std::string scene = folder.write("lamp.xml", scene_text).string();
+struct SceneFolder {
+    ScratchFolder scratch;
+    std::string scene = scratch.write("lamp.xml", scene_text).string();
     Outcome sweep(const std::string &arguments) const {
-        return run_shell("cd " + folder.path().string() + " && " + OPAL_BINARY + " sweep " + scene + " " + arguments);
+        return run_shell("cd " + scratch.path().string() + " && " + OPAL_BINARY + " sweep " + scene + " " + arguments);
     }
-    nlohmann::json record() const { return nlohmann::json::parse(read_text(folder / "out/sweep.json")); }
+    nlohmann::json record() const { return nlohmann::json::parse(read_text(scratch / "out/sweep.json")); }
 };
 
 size_t count(const std::string &text, const std::string &word) {
@@ -43,32 +43,32 @@ size_t count(const std::string &text, const std::string &word) {
 
 } // namespace
 
-TEST_CASE("A sweep ranks strategies, tells it on one page, and goes on where it stopped", "[sweep]") {
-    const Place place;
+TEST_CASE("A sweep ranks strategies, tells it on one page, and goes on where it stopped", "[sweep][stat]") {
+    const SceneFolder folder;
     const std::string what = "--strategies lighting=bsdf lighting=emitter --spp 16,64 --reference-spp 4096 -o out ";
-    const Outcome first = place.sweep(what + "--replicates 3");
+    const Outcome first = folder.sweep(what + "--replicates 3");
     INFO(first.err);
     REQUIRE(first.exit_code == 0);
     CHECK_THAT(first.out,
                Catch::Contains("lighting=emitter is the fastest") && Catch::Contains("lighting=bsdf needs "));
-    const nlohmann::json record = place.record();
+    const nlohmann::json record = folder.record();
     REQUIRE(record["strategies"].size() == 2);
     for (const auto &strategy : record["strategies"]) {
         const double mse16 = strategy["points"][0]["replicates"][0]["mse"],
                      mse64 = strategy["points"][1]["replicates"][0]["mse"];
         CHECK(mse16 / mse64 == Approx(4).epsilon(0.5)); // 384 pixels: the error of an MSE is some 10 %
     }
-    const std::string page = read_text(place.folder / "out/index.html");
-    CHECK(count(page, "data:image/png;base64,") == 5); // the reference, and of each an image and an error map
+    const std::string page = read_text(folder.scratch / "out/index.html");
+    CHECK(count(page, "data:image/png;base64,") == 5); // the reference, and an image and an error map of each strategy
     CHECK(count(page, "<circle") == 2 * 2 + 2);        // the points, the legend
     CHECK(count(page, "http") == 0);                   // nothing from elsewhere
-    CHECK(count(read_text(place.folder / "out/sweep.csv"), "\n") == 1 + 4);
+    CHECK(count(read_text(folder.scratch / "out/sweep.csv"), "\n") == 1 + 4);
 
-    // More replicates: those that are there stay, to the last digit of their seconds; so does the reference.
-    const Outcome second = place.sweep(what + "--replicates 4");
+    // With more replicates the earlier ones stay, to the last digit of their seconds, and so does the reference.
+    const Outcome second = folder.sweep(what + "--replicates 4");
     INFO(second.err);
     REQUIRE(second.exit_code == 0);
-    const nlohmann::json longer = place.record();
+    const nlohmann::json longer = folder.record();
     CHECK(longer["reference"] == record["reference"]);
     for (size_t s : {0, 1})
         for (size_t p : {0, 1}) {
@@ -78,24 +78,24 @@ TEST_CASE("A sweep ranks strategies, tells it on one page, and goes on where it 
             CHECK(replicates == record["strategies"][s]["points"][p]["replicates"]);
         }
 
-    const Outcome other = place.sweep(what + "--replicates 3 --width 12");
+    const Outcome other = folder.sweep(what + "--replicates 3 --width 12");
     CHECK(other.exit_code == 1);
     CHECK_THAT(other.err, Catch::Contains("holds another sweep (width was 24, is 12)"));
 }
 
-TEST_CASE("The slope of every independent unbiased strategy is -1 within its interval", "[sweep]") {
+TEST_CASE("The slope of every independent unbiased strategy is -1 within its interval", "[sweep][stat]") {
     const std::string integrator = GENERATE("path_mis", "direct_lighting");
     CAPTURE(integrator);
-    const Place place;
+    const SceneFolder folder;
     const Outcome outcome =
-        place.sweep("--integrator " + integrator + " --spp 32,128,512 --replicates 8 --reference-spp 32768 -o out");
+        folder.sweep("--integrator " + integrator + " --spp 32,128,512 --replicates 8 --reference-spp 32768 -o out");
     INFO(outcome.err);
     REQUIRE(outcome.exit_code == 0);
-    const nlohmann::json record = place.record();
+    const nlohmann::json record = folder.record();
     CHECK(record["strategies"].size() == (integrator == "path_mis" ? 5 : 6));
     for (const nlohmann::json &strategy : record["strategies"]) {
         double mean = 0, squares = 0;
-        for (int r = 0; r < 8; r++) { // least squares on three abscissas of equal distance: the outer two decide
+        for (int r = 0; r < 8; r++) { // least squares on three equally spaced points: the outer two decide
             const auto mse = [&](int p) { return strategy["points"][p]["replicates"][r]["mse"].get<double>(); };
             const double slope = std::log(mse(2) / mse(0)) / std::log(16.0);
             mean += slope / 8;
@@ -109,34 +109,35 @@ TEST_CASE("The slope of every independent unbiased strategy is -1 within its int
 }
 
 TEST_CASE("Names of any bytes are swept, and gone on with", "[sweep]") {
-    Place place;
-    place.scene = place.folder.write("l\344mp.xml", scene_text);
-    REQUIRE(run_shell("cd " + place.folder.path().string() + " && " OPAL_BINARY " " + place.scene +
+    SceneFolder folder;
+    folder.scene = folder.scratch.write("l\344mp.xml", scene_text);
+    REQUIRE(run_shell("cd " + folder.scratch.path().string() + " && " OPAL_BINARY " " + folder.scene +
                       " --spp 1 -o r\344f.exr")
                 .exit_code == 0);
     for (const std::string replicates : {"2", "3"}) {
-        const Outcome outcome = place.sweep(
+        const Outcome outcome = folder.sweep(
             "--strategies lighting=emitter lighting=mis --spp 2 --reference r\344f.exr -o out --replicates " +
             replicates);
         INFO(outcome.err);
         CHECK(outcome.exit_code == 0);
-        CHECK_THAT(place.record()["scene"].get<std::string>(), Catch::EndsWith("l\uFFFDmp.xml"));
-        CHECK(place.record()["strategies"][0]["points"][0]["replicates"].size() == std::stoul(replicates));
+        CHECK_THAT(folder.record()["scene"].get<std::string>(), Catch::EndsWith("l\uFFFDmp.xml"));
+        CHECK(folder.record()["strategies"][0]["points"][0]["replicates"].size() == std::stoul(replicates));
     }
-    std::filesystem::remove(place.folder / "out/equal_time_1.png"); // a picture that is missing is made again
-    CHECK(place.sweep("--strategies lighting=emitter lighting=mis --spp 2 --reference r\344f.exr -o out --replicates 3")
-              .exit_code == 0);
-    CHECK(std::filesystem::exists(place.folder / "out/equal_time_1.png"));
+    std::filesystem::remove(folder.scratch / "out/equal_time_1.png"); // a picture that is missing is made again
+    CHECK(
+        folder.sweep("--strategies lighting=emitter lighting=mis --spp 2 --reference r\344f.exr -o out --replicates 3")
+            .exit_code == 0);
+    CHECK(std::filesystem::exists(folder.scratch / "out/equal_time_1.png"));
 }
 
 TEST_CASE("What makes no sense is refused before anything is rendered", "[sweep]") {
-    const Place place;
+    const SceneFolder folder;
     const auto refused = [&](const std::string &arguments, const std::string &reason) {
-        const Outcome outcome = place.sweep(arguments + " -o out");
+        const Outcome outcome = folder.sweep(arguments + " -o out");
         INFO(arguments << "\n" << outcome.err);
         CHECK(outcome.exit_code == 1);
         CHECK_THAT(outcome.err, Catch::Contains(reason));
-        CHECK_FALSE(std::filesystem::exists(place.folder / "out"));
+        CHECK_FALSE(std::filesystem::exists(folder.scratch / "out"));
     };
     refused("--replicates 1", "an interval needs at least 2");
     refused("--spp 0", "--spp 0: possible are 1 to ");
@@ -159,22 +160,22 @@ TEST_CASE("What makes no sense is refused before anything is rendered", "[sweep]
 }
 
 TEST_CASE("A reference of another size, scene or without colours is refused before anything is rendered", "[sweep]") {
-    const Place place;
-    place.folder.write("other.xml", scene_text);
+    const SceneFolder folder;
+    folder.scratch.write("other.xml", scene_text);
     const auto in_place = [&](const std::string &command) {
-        return run_shell("cd " + place.folder.path().string() + " && " + OPAL_BINARY + " " + command);
+        return run_shell("cd " + folder.scratch.path().string() + " && " + OPAL_BINARY + " " + command);
     };
     REQUIRE(in_place("lamp.xml --spp 1 --width 12 -o small.exr").exit_code == 0);
     REQUIRE(in_place("other.xml --spp 1 -o other.exr").exit_code == 0);
-    write_exr(Image{24, 16, {{"Y", std::vector<float>(24 * 16)}}, {}}, place.folder / "grey.exr");
+    write_exr(Image{24, 16, {{"Y", std::vector<float>(24 * 16)}}, {}}, folder.scratch / "grey.exr");
     for (const auto &[file, reason] : {std::pair{"small.exr", "has 12 x 8 pixels, the scene 24 x 16"},
                                        {"other.exr", "is an image of "},
                                        {"grey.exr", "has no layer R"}}) {
-        const Outcome outcome = place.sweep(std::string("-o out --reference ") + file);
+        const Outcome outcome = folder.sweep(std::string("-o out --reference ") + file);
         INFO(outcome.err);
         CHECK(outcome.exit_code == 1);
         CHECK_THAT(outcome.err, Catch::Contains(file) && Catch::Contains(reason));
-        CHECK_FALSE(std::filesystem::exists(place.folder / "out"));
+        CHECK_FALSE(std::filesystem::exists(folder.scratch / "out"));
     }
 }
 
@@ -183,15 +184,15 @@ TEST_CASE("Several devices and kinds of math are crossed, each device in a proce
         WARN("not tested: only PoCL offers a device twice");
         return;
     }
-    const Place place;
+    const SceneFolder folder;
     const Outcome outcome = run_shell(
-        "cd " + place.folder.path().string() +
+        "cd " + folder.scratch.path().string() +
         " && POCL_DEVICES='pthread pthread' OCL_ICD_FILENAMES= OCL_ICD_VENDORS=" + device().info.library + " " +
         OPAL_BINARY +
         " sweep lamp.xml --strategies lighting=emitter --math precise,fast --device 0,1 --spp 8 --replicates 2 -o out");
     INFO(outcome.err);
     REQUIRE(outcome.exit_code == 0);
-    const nlohmann::json record = place.record();
+    const nlohmann::json record = folder.record();
     CHECK(record["devices"].size() == 2);
     REQUIRE(record["strategies"].size() == 4);
     for (size_t s = 0; s < 4; s++) {
@@ -200,6 +201,6 @@ TEST_CASE("Several devices and kinds of math are crossed, each device in a proce
         CHECK(strategy["label"] == std::string("lighting=emitter; ") + (s % 2 ? "fast" : "precise") + " math; device " +
                                        (s / 2 ? "1" : "0"));
         CHECK(strategy["points"][0]["replicates"].size() == 2);
-        CHECK(std::filesystem::exists(place.folder / ("out/equal_time_" + std::to_string(s + 1) + ".exr")));
+        CHECK(std::filesystem::exists(folder.scratch / ("out/equal_time_" + std::to_string(s + 1) + ".exr")));
     }
 }

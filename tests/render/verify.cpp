@@ -1,4 +1,4 @@
-// `opal verify` as its users meet it: green on right kernels, and biases planted in wrong ones are found.
+// `opal verify` as its users meet it: it accepts right kernels, and finds biases that were planted in wrong ones.
 #include "read/nori/load.h"
 #include "scene/options.h"
 #include "strategies/combinations.h"
@@ -14,7 +14,7 @@ using namespace opal::test;
 
 namespace {
 
-// A wall that a large light behind the camera shines on: little noise, whatever the strategy.
+// A wall lit by a large light behind the camera: little noise, whatever the strategy.
 const char *const scene_text = R"(<scene>
   <integrator type="path_mis"><integer name="maxDepth" value="2"/></integrator>
   <sampler type="independent"><integer name="sampleCount" value="4"/></sampler>
@@ -31,83 +31,78 @@ const char *const scene_text = R"(<scene>
 </scene>
 )";
 
-struct Place {
-    ScratchFolder folder;
-    std::string scene = folder.write("wall.xml", scene_text).string();
+struct SceneFolder {
+    ScratchFolder scratch;
+    std::string scene = scratch.write("wall.xml", scene_text).string();
     Outcome verify(const std::string &arguments) const {
-        return run_shell("cd " + folder.path().string() + " && " + OPAL_BINARY + " verify " + scene +
+        return run_shell("cd " + scratch.path().string() + " && " + OPAL_BINARY + " verify " + scene +
                          " --json out.json " + arguments);
     }
-    nlohmann::json report() const { return nlohmann::json::parse(read_text(folder / "out.json")); }
-    // A copy of cl/ with that mistake, as --cl-dir takes it.
-    std::string wrong_kernels(const Mutant &mutant) const {
-        for (const auto &[name, text] : mutated(Sources::embedded(), mutant).files)
-            folder.write("cl/" + name, text);
-        return " --cl-dir cl";
-    }
+    nlohmann::json report() const { return nlohmann::json::parse(read_text(scratch / "out.json")); }
+    std::string wrong_kernels(const Mutant &mutant) const { return " --cl-dir " + write_kernels(scratch, mutant); }
 };
 
-SceneDescription load(const Place &place, const std::string &integrator) {
-    SceneDescription scene = load_scene(place.scene);
+SceneDescription load(const SceneFolder &folder, const std::string &integrator) {
+    SceneDescription scene = load_scene(folder.scene);
     override_strategy(scene.strategy, {{"integrator", integrator}, {"max-depth", "none"}});
     return scene;
 }
 
 } // namespace
 
-TEST_CASE("All sensible strategies of a right renderer agree", "[verify]") {
-    const Place place;
-    const Outcome outcome = place.verify("--budget 20s");
+TEST_CASE("All sensible strategies of a right renderer agree", "[verify][stat]") {
+    const SceneFolder folder;
+    const Outcome outcome = folder.verify("--budget 20s");
     INFO(outcome.out << outcome.err);
     CHECK(outcome.exit_code == 0);
     CHECK_THAT(outcome.out, Catch::Contains("strategies agree") && Catch::Contains("Power: with 90 %"));
-    const auto report = place.report();
+    const auto report = folder.report();
     CHECK(report["agree"] == true);
     CHECK(report["strategies"].size() >= 5);
     CHECK(report["pairs"].size() == report["strategies"].size() * (report["strategies"].size() - 1) / 2);
-    double least_spp = INFINITY; // a busy machine renders few in that time
+    double least_spp = INFINITY; // a busy machine renders few samples in that time
     for (const auto &strategy : report["strategies"])
         least_spp = std::min(least_spp, strategy["spp"].get<double>());
     CHECK(report["detectable_bias"].get<double>() < 0.5 / std::sqrt(least_spp)); // 2 % with 625 samples
-    CHECK_FALSE(std::filesystem::exists(place.folder / "verify_wall"));
+    CHECK_FALSE(std::filesystem::exists(folder.scratch / "verify_wall"));
 }
 
-TEST_CASE("A bias of 2 % in one strategy is found, and the strategy is named", "[verify]") {
-    const Place place;
+TEST_CASE("A bias of 2 % in one strategy is found, and the strategy is named", "[verify][stat]") {
+    const SceneFolder folder;
     const Mutant mutant{"uniform sampling 2 % too bright", "bsdfs/diffuse.cl", "b.use_cosine ? (real)(1) : 2 * wo.z",
                         "b.use_cosine ? (real)(1) : R(2.04) * wo.z"};
     const Outcome outcome =
-        place.verify("--budget 20s --strategies 'lighting=bsdf,hemisphere=cosine; lighting=bsdf,hemisphere=uniform; "
-                     "lighting=emitter'" +
-                     place.wrong_kernels(mutant));
+        folder.verify("--budget 20s --strategies 'lighting=bsdf,hemisphere=cosine; lighting=bsdf,hemisphere=uniform; "
+                      "lighting=emitter'" +
+                      folder.wrong_kernels(mutant));
     INFO(outcome.out << outcome.err);
     CHECK(outcome.exit_code == 1);
     CHECK_THAT(outcome.out, Catch::Contains("DISAGREE: 2 of 3 pairs") &&
                                 Catch::Contains("lighting=bsdf,hemisphere=uniform stands alone: 2 of its 2 pairs"));
-    CHECK(place.report()["agree"] == false);
+    CHECK(folder.report()["agree"] == false);
     for (const char *file : {"image.exr", "reference.exr", "z.png", "strategy_3.exr", "verify.json"})
-        CHECK(std::filesystem::exists(place.folder / "verify_wall" / file));
+        CHECK(std::filesystem::exists(folder.scratch / "verify_wall" / file));
 }
 
-TEST_CASE("A bias of 2 % of light sampling is found by the strategies chosen by default", "[verify]") {
-    const Place place;
+TEST_CASE("A bias of 2 % of light sampling is found by the strategies chosen by default", "[verify][stat]") {
+    const SceneFolder folder;
     const Mutant mutant{"light samples 2 % too bright", "integrators/steps.cl",
                         "emitter_radiance(scene, id)), wo.z * inverse_pdf",
                         "emitter_radiance(scene, id)), R(1.02) * wo.z * inverse_pdf"};
-    const Outcome outcome = place.verify("--budget 30s" + place.wrong_kernels(mutant));
+    const Outcome outcome = folder.verify("--budget 30s" + folder.wrong_kernels(mutant));
     INFO(outcome.out << outcome.err);
     CHECK(outcome.exit_code == 1);
-    CHECK_THAT(place.report()["suspect"].get<std::string>(), Catch::Contains("lighting="));
+    CHECK_THAT(folder.report()["suspect"].get<std::string>(), Catch::Contains("lighting="));
 }
 
 TEST_CASE("Strategies that do not exist or make no sense are refused before rendering", "[verify]") {
-    const Place place;
+    const SceneFolder folder;
     const auto refused = [&](const std::string &strategies, const std::string &reason) {
-        const Outcome outcome = place.verify("--strategies '" + strategies + "'");
+        const Outcome outcome = folder.verify("--strategies '" + strategies + "'");
         INFO(strategies << "\n" << outcome.err);
         CHECK(outcome.exit_code == 1);
         CHECK_THAT(outcome.err, Catch::Contains(reason));
-        CHECK_FALSE(std::filesystem::exists(place.folder / "out.json"));
+        CHECK_FALSE(std::filesystem::exists(folder.scratch / "out.json"));
     };
     refused("lighting=mis", "nothing to hold against each other: 1 strategy");
     refused("lighting=mis;lighting=emiter",
@@ -119,8 +114,8 @@ TEST_CASE("Strategies that do not exist or make no sense are refused before rend
 }
 
 TEST_CASE("The covering set holds every pair of choices that makes sense, once", "[verify]") {
-    const Place place;
-    const SceneDescription scene = load(place, "path_mis");
+    const SceneFolder folder;
+    const SceneDescription scene = load(folder, "path_mis");
     const auto all = sensible_strategies(scene, 100000), few = sensible_strategies(scene);
     REQUIRE(all.size() > 30);
     CHECK(few.size() < 16);
@@ -139,13 +134,13 @@ TEST_CASE("The covering set holds every pair of choices that makes sense, once",
 }
 
 TEST_CASE("Each integrator varies what it asks", "[verify]") {
-    const Place place;
-    CHECK(sensible_strategies(load(place, "ao"), 100).size() == 2 * 3);  // hemisphere, sampler
-    CHECK(sensible_strategies(load(place, "normals"), 100).size() == 3); // sampler
-    CHECK(sensible_strategies(load(place, "whitted"), 100).size() == 3); // sampler: one emitter, no triangles
+    const SceneFolder folder;
+    CHECK(sensible_strategies(load(folder, "ao"), 100).size() == 2 * 3);  // hemisphere, sampler
+    CHECK(sensible_strategies(load(folder, "normals"), 100).size() == 3); // sampler
+    CHECK(sensible_strategies(load(folder, "whitted"), 100).size() == 3); // sampler: one emitter, no triangles
     // lighting bsdf (3 hemispheres), emitter, mis (3 heuristics x 3 hemispheres), each with 3 samplers
-    CHECK(sensible_strategies(load(place, "direct_lighting"), 100).size() == 3 * (3 + 1 + 9));
-    SceneDescription with_point = load(place, "direct_lighting");
+    CHECK(sensible_strategies(load(folder, "direct_lighting"), 100).size() == 3 * (3 + 1 + 9));
+    SceneDescription with_point = load(folder, "direct_lighting");
     with_point.point_lights.push_back({{0, 0, 0}, {1, 1, 1}, {}});
     for (const NamedStrategy &s : sensible_strategies(with_point, 100))
         CHECK(s.strategy[AXIS_lighting] != CHOICE_lighting_bsdf);

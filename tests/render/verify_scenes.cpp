@@ -1,5 +1,5 @@
-// `opal verify` on our own scenes: green as they are, and a bias of 2 % planted in one strategy of the Cornell box is
-// found within a minute, on every seed.
+// `opal verify` on the scenes of scenes/: all strategies agree, and a bias of 2 % planted in one strategy of the
+// Cornell box is found within a minute, on every seed.
 #include "support/mutants.h"
 #include "support/scratch.h"
 
@@ -30,7 +30,7 @@ const std::vector<Mutant> planted = {
 
 } // namespace
 
-TEST_CASE("All strategies agree on every scene of ours", "[verify_scenes]") {
+TEST_CASE("All strategies agree on every scene of ours", "[verify_scenes][stat][long]") {
     const ScratchFolder folder;
     size_t scenes = 0;
     for (const auto &entry : std::filesystem::recursive_directory_iterator(OPAL_SOURCE_DIR "/scenes")) {
@@ -45,11 +45,10 @@ TEST_CASE("All strategies agree on every scene of ours", "[verify_scenes]") {
     CHECK(scenes >= 15);
 }
 
-TEST_CASE("verify finds every bias of 2 % planted in the Cornell box within a minute", "[verify_scenes]") {
+TEST_CASE("verify finds every bias of 2 % planted in the Cornell box within a minute", "[verify_scenes][stat][long]") {
     const ScratchFolder folder;
     for (const Mutant &mutant : planted) {
-        for (const auto &[name, text] : mutated(Sources::embedded(), mutant).files)
-            folder.write("cl/" + name, text);
+        write_kernels(folder, mutant);
         for (const int seed : {100, 200, 300}) {
             const Outcome outcome = run_shell(fmt::format(
                 "cd {} && {} verify {}/scenes/cbox_mis.xml --budget 60s --seed {} --quiet --cl-dir cl --json out.json",

@@ -1,23 +1,20 @@
 // `opal warp`: right kernels are accepted, wrong ones rejected, and the picture is written.
-#include "support/scratch.h"
+#include "support/mutants.h"
 
 #include <catch2/catch.hpp>
-
-#include <cstdlib>
 
 using namespace opal::test;
 
 namespace {
 
 Outcome warp(const std::string &arguments) {
-    const char *wanted = std::getenv("OPAL_TEST_DEVICE");
-    return run_shell(std::string(OPAL_BINARY) + " warp --samples 3e5 --significance 1e-5 --device " +
-                     (wanted ? wanted : "cpu") + " " + arguments);
+    return run_shell(std::string(OPAL_BINARY) + " warp --samples 3e5 --significance 1e-5 --device " + wanted_device() +
+                     " " + arguments);
 }
 
 } // namespace
 
-TEST_CASE("Every target of the list is accepted", "[warp_command]") {
+TEST_CASE("Every target of the list is accepted", "[warp_command][stat]") {
     const Outcome list = warp("--list");
     REQUIRE(list.exit_code == 0);
     std::istringstream lines(list.out);
@@ -30,7 +27,7 @@ TEST_CASE("Every target of the list is accepted", "[warp_command]") {
     CHECK(targets >= 13);
 }
 
-TEST_CASE("Lobes are accepted at grazing incidence, narrow and wide, at one lane", "[warp_command]") {
+TEST_CASE("Lobes are accepted at grazing incidence, narrow and wide, at one lane", "[warp_command][stat]") {
     for (const char *arguments :
          {"bsdf:microfacet --alpha 0.02 --theta 89.9", "bsdf:microfacet --alpha 1 --kd 0 --theta 80 --phi 200",
           "bsdf:phong --n 2000 --pd 0 --theta 70", "beckmann --alpha 0.003", "phong_lobe --n 1e5",
@@ -41,23 +38,21 @@ TEST_CASE("Lobes are accepted at grazing incidence, narrow and wide, at one lane
     }
 }
 
-TEST_CASE("A wrong density is rejected", "[warp_command]") {
+TEST_CASE("A wrong density is rejected", "[warp_command][stat]") {
     const ScratchFolder folder;
-    std::filesystem::copy(OPAL_SOURCE_DIR "/cl", folder / "cl", std::filesystem::copy_options::recursive);
-    const auto replace = [&](const std::string &file, const std::string &from, const std::string &to) {
-        std::string text = read_text(folder / ("cl/" + file));
-        const size_t place = text.find(from);
-        REQUIRE(place != std::string::npos);
-        folder.write("cl/" + file, text.replace(place, from.size(), to));
+    const auto warp_of = [&](const Mutant &mutant, const std::string &arguments) {
+        return warp(arguments + " --cl-dir " + write_kernels(folder, mutant)).exit_code;
     };
-    replace("core/warp.cl", "v3 square_to_cosine_hemisphere(v2 u) { return direction_of(sqrt(1 - u.x), sqrt(u.x)",
-            "v3 square_to_cosine_hemisphere(v2 u) { return direction_of(1 - u.x, sqrt(u.x * (2 - u.x))");
-    replace("emitters/interface.cl", "unit_real((u).y) < GATHER(real, (scene)->table, (first) + row_, .accept)",
-            "(u).y < 0x80000000u");
-    const std::string mutated = " --cl-dir " + (folder / "cl").string();
-    CHECK(warp("cosine_hemisphere" + mutated).exit_code == 1);
-    CHECK(warp("light:many --emitter-choice power" + mutated).exit_code == 1);
-    CHECK(warp("uniform_disk" + mutated).exit_code == 0);
+    const Mutant hemisphere = {
+        "cosine hemisphere without the cosine", "core/warp.cl",
+        "v3 square_to_cosine_hemisphere(v2 u) { return direction_of(sqrt(1 - u.x), sqrt(u.x)",
+        "v3 square_to_cosine_hemisphere(v2 u) { return direction_of(1 - u.x, sqrt(u.x * (2 - u.x))"};
+    const Mutant alias = {"half of all rows keep their index", "emitters/interface.cl",
+                          "unit_real((u).y) < GATHER(real, (scene)->table, (first) + row_, .accept)",
+                          "(u).y < 0x80000000u"};
+    CHECK(warp_of(hemisphere, "cosine_hemisphere") == 1);
+    CHECK(warp_of(alias, "light:many --emitter-choice power") == 1);
+    CHECK(warp_of(alias, "uniform_disk") == 0);
 }
 
 TEST_CASE("The plot is a PNG; what does not exist is named", "[warp_command]") {

@@ -1,4 +1,4 @@
-// Estimators that mean the same, held against each other.
+// Strategies with one expectation, held against each other.
 #include "stats/hypothesis.h"
 #include "support/checks.h"
 #include "support/pictures.h"
@@ -58,22 +58,22 @@ Group occlusion_group() {
             {{{"integrator", "ao"}, {"hemisphere", "uniform"}}, {{"integrator", "ao"}, {"hemisphere", "cosine"}}}};
 }
 
-// Means of the luminance, each strategy against every other.
+// The mean luminance of each strategy against that of every other.
 Findings agreement_of(const Group &group, const Sources &sources, unsigned seed) {
-    Shot shot;
-    shot.sources = &sources;
+    RenderSetup setup;
+    setup.sources = &sources;
     std::vector<stats::Sample> samples;
     Findings findings;
     for (Overrides how : group.strategies) {
         how["specialise"] = "off";
-        const Film film = render(with(group.scene, how), group.spp, seed + unsigned(samples.size()), shot);
+        const Film film = render(with_strategy(group.scene, how), group.spp, seed + unsigned(samples.size()), setup);
         samples.push_back(sample_of(film));
         findings.push_back(exact(group.name + ": no invalid samples", film.invalid == 0));
     }
     for (size_t i = 0; i < samples.size(); i++)
         for (size_t j = i + 1; j < samples.size(); j++)
-            findings.push_back({group.name + ": strategies " + std::to_string(i) + " and " + std::to_string(j),
-                                stats::welch_test(samples[i], samples[j]).p_value});
+            findings.push_back(p_value(group.name + ": strategies " + std::to_string(i) + " and " + std::to_string(j),
+                                       stats::welch_test(samples[i], samples[j]).p_value));
     return findings;
 }
 
@@ -81,10 +81,8 @@ Findings agreement_of(const Group &group, const Sources &sources, unsigned seed)
 
 Findings check_agreement(const Sources &sources, unsigned seed) {
     Findings findings = agreement_of(path_group(), sources, seed);
-    for (const Group &group : {direct_group(), occlusion_group()}) {
-        const Findings more = agreement_of(group, sources, seed + unsigned(findings.size()));
-        findings.insert(findings.end(), more.begin(), more.end());
-    }
+    for (const Group &group : {direct_group(), occlusion_group()})
+        append(findings, agreement_of(group, sources, seed + unsigned(findings.size())));
     return findings;
 }
 

@@ -5,6 +5,7 @@
 #include "support/rooms.h"
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -12,14 +13,14 @@ namespace opal::test {
 
 namespace {
 
-// Renders one strategy after the other in one kernel that decides at run time, so that a check costs one compilation.
+// Renders by the general kernel, which decides about strategies at run time, so that a check compiles one kernel.
 Film render_general(SceneDescription scene, const Overrides &overrides, unsigned spp, unsigned seed,
                     const Sources &sources) {
     Overrides all = overrides;
     all["specialise"] = "off";
-    Shot shot;
-    shot.sources = &sources;
-    return render(with(std::move(scene), all), spp, seed, shot);
+    RenderSetup setup;
+    setup.sources = &sources;
+    return render(with_strategy(std::move(scene), all), spp, seed, setup);
 }
 
 std::string text_of(const Overrides &overrides) {
@@ -30,29 +31,54 @@ std::string text_of(const Overrides &overrides) {
 }
 
 Finding mean_is(const std::string &what, const Film &film, double truth, int channel = 3) {
-    return {what, stats::z_test(sample_of(film, channel), truth).p_value};
+    return p_value(what, stats::z_test(sample_of(film, channel), truth).p_value);
+}
+
+// The level of each p-value.
+double level_of(const Findings &findings) {
+    const auto count =
+        std::count_if(findings.begin(), findings.end(), [](const Finding &f) { return f.kind == FigureKind::p_value; });
+    return stats::sidak_level(check_level, double(std::max<std::ptrdiff_t>(1, count)));
+}
+
+bool passes(const Finding &finding, double level) {
+    return finding.kind == FigureKind::p_value ? finding.figure >= level : finding.passed;
 }
 
 } // namespace
 
 const Finding &worst(const Findings &findings) {
+    const double level = level_of(findings);
+    const auto score = [level](const Finding &f) {
+        return f.kind == FigureKind::p_value && f.figure >= 0 ? f.figure : passes(f, level) ? 1 : 0;
+    };
     return *std::min_element(findings.begin(), findings.end(),
-                             [](const Finding &a, const Finding &b) { return !(a.p >= b.p); });
+                             [&](const Finding &a, const Finding &b) { return score(a) < score(b); });
 }
 
 bool rejected(const Findings &findings) {
-    return findings.empty() || !(worst(findings).p >= stats::sidak_level(check_level, double(findings.size())));
+    const double level = level_of(findings);
+    return !std::all_of(findings.begin(), findings.end(), [&](const Finding &f) { return passes(f, level); }) ||
+           findings.empty();
 }
 
 void require_all_pass(const Findings &findings) {
     REQUIRE_FALSE(findings.empty());
+    const double level = level_of(findings);
     for (const Finding &finding : findings) {
-        INFO(finding.what);
-        CHECK(finding.p >= stats::sidak_level(check_level, double(findings.size())));
+        INFO(text_of(finding));
+        CHECK(passes(finding, level));
     }
 }
 
-Finding exact(const std::string &what, bool holds) { return {what, holds ? 1.0 : 0.0}; }
+std::string text_of(const Finding &finding) {
+    const std::string what = finding.check + (finding.subject.empty() ? "" : ", " + finding.subject);
+    return finding.kind == FigureKind::p_value
+               ? fmt::format("{}: p = {:.2g}", what, finding.figure)
+               : fmt::format("{}: {:.4g}, at most {:.4g}", what, finding.figure, finding.limit);
+}
+
+Finding exact(const std::string &what, bool holds) { return none_wrong(what, !holds); }
 
 Findings check_furnace(const Sources &sources, unsigned seed) {
     Findings findings;

@@ -1,28 +1,23 @@
-// Checks of rendering that a test runs on the kernels as they are, and a negative control on mutants of them
-// (support/mutants.h): what passes for the one must fail for the other.
+// Checks of rendering. A test runs them on Opal's kernels, which must pass; a negative control runs them on mutants
+// (support/mutants.h), which must fail.
 #pragma once
 
 #include "device/program.h"
+#include "selftest/finding.h"
 
 #include <functional>
 #include <string>
-#include <vector>
 
 namespace opal::test {
 
-// One comparison: its p-value, or 0 and 1 where it is exact.
-struct Finding {
-    std::string what;
-    double p;
-};
-using Findings = std::vector<Finding>;
-
-// A check at this level, split over its findings (Sidak): a right kernel fails one check in a hundred thousand.
+// A check at this level, split over its p-values (Sidak): a right kernel fails one check in a hundred thousand.
 constexpr double check_level = 1e-5;
-const Finding &worst(const Findings &findings);
+const Finding &worst(const Findings &findings); // the first that fails, else the smallest p-value
 bool rejected(const Findings &findings);
+std::string text_of(const Finding &finding);     // check, case, figure, limit
 void require_all_pass(const Findings &findings); // CHECKs each, with what it is
 
+// A comparison that holds or does not, without statistics.
 Finding exact(const std::string &what, bool holds);
 
 using Check = std::function<Findings(const Sources &sources, unsigned seed)>;
@@ -30,21 +25,20 @@ using Check = std::function<Findings(const Sources &sources, unsigned seed)>;
 Findings check_furnace(const Sources &sources, unsigned seed);
 Findings check_glass_furnace(const Sources &sources, unsigned seed);
 Findings check_triangle_light(const Sources &sources, unsigned seed);
-Findings check_point_light(const Sources &sources, unsigned seed); // of `simple` too
+Findings check_point_light(const Sources &sources, unsigned seed); // integrator simple, too
 Findings check_smooth_normals(const Sources &sources, unsigned seed);
 
-// Discrete choices, drawn with the probability that their weights state: to 1e-6, without statistics.
+// Discrete choices are drawn with the probability that their weights state: to 1e-6, without statistics.
 Findings check_counted(const Sources &sources, unsigned seed);
 
-// Estimators with one expectation, each held against the others: path tracing in a room of all materials; direct light
-// in a matte one, where direct_lighting, whitted and paths of two segments mean the same; ambient occlusion; Russian
-// roulette.
+// Strategies with one expectation, each held against the others: path tracing in a room of all materials; direct light
+// in a matte room, where direct_lighting, whitted and paths of two segments have one expectation; ambient occlusion.
 Findings check_agreement(const Sources &sources, unsigned seed);
 
 // The pixel filters: a constant picture, the sum of the weights, an edge whose blur is known.
 Findings check_filters(const Sources &sources, unsigned seed);
 
-// The film's sums of slots against double on the host, for samples of very different size.
+// The film's sums against double on the host, for samples of very different size.
 Findings check_film(const Sources &sources, unsigned seed);
 // Passes cut differently: the same bits.
 Findings check_passes(const Sources &sources, unsigned seed);

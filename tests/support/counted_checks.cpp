@@ -1,6 +1,6 @@
-// Probabilities, counted. 2^24 Sobol samples of one pixel give every number k 2^-24 once in each dimension: what is
-// drawn with a stated probability then comes exactly that often, and a picture without other variance is exact. No
-// statistics, no seed: limits are roundings.
+// Probabilities of discrete choices, by counting. 2^24 Sobol samples of a pixel take each number k 2^-24 once in every
+// dimension, so that a choice of probability p comes up exactly p 2^24 times, and an image without other variance is
+// exact. There are no statistics and no seed; limits are roundings.
 #include "probe/kernel_probe.h"
 #include "support/checks.h"
 #include "support/device.h"
@@ -24,15 +24,14 @@ Finding counted(const std::string &what, SceneDescription scene, const Overrides
                 const Sources &sources) {
     scene.camera.width = scene.camera.height = 1;
     scene.strategy[AXIS_sampler] = CHOICE_sampler_sobol;
-    Shot shot;
-    shot.sources = &sources;
-    const double got = sample_of(render(with(std::move(scene), how), 1u << 24, 0, shot), 0).mean;
+    RenderSetup setup;
+    setup.sources = &sources;
+    const double got = sample_of(render(with_strategy(std::move(scene), how), 1u << 24, 0, setup), 0).mean;
     return exact(fmt::format("{}: {:.9g}, not {:.9g}, off by {:.2g}", what, got, truth, got / truth - 1),
                  std::abs(got / truth - 1) <= counted_limit);
 }
 
-// A patch of that albedo in a black room that emits 1: each path that survives the patch carries albedo / survival
-// home.
+// A patch of that albedo in a black room that emits 1: a path that survives the patch has the weight albedo / survival.
 SceneDescription dark_patch(double albedo) {
     SceneDescription scene = furnace(0, 1);
     scene.meshes.push_back(diffuse(Parallelogram{{-0.1, -0.5, -0.1}, {0, 0, 0.2}, {0.2, 0, 0}}, float(albedo), true));
@@ -42,20 +41,18 @@ SceneDescription dark_patch(double albedo) {
 }
 const Overrides dark_path = {{"lighting", "bsdf"}, {"rr", "throughput"}};
 
-// point_light, its lamp the first of several; the others lie below the floor, which hides them.
+// The scene point_light with further lamps below the floor, which hides them.
 SceneDescription lamps(const std::vector<double> &others) {
     SceneDescription scene = point_light();
-    scene.camera.fov = 1e-5; // one point, however few samples choose the lamp
+    scene.camera.fov = 1e-5; // all samples see one point, however few choose the lamp
     for (double power : others)
         scene.point_lights.push_back({{0.1, -1, 0.2}, {power, power, power}, {}});
     return scene;
 }
 
-double fresnel_at_normal(double near, double far) { return std::pow((near - far) / (near + far), 2); }
-
-// A pane seen at right angles: what it reflects shines, what it lets through meets nothing.
+// A pane seen at right angles: reflected paths meet a light, refracted ones leave the scene.
 SceneDescription reflection(float index) {
-    BsdfRecord glass = bsdf_record(BSDF_dielectric);
+    BsdfRecord glass = examples::dielectric();
     glass.u.dielectric = {index, 1};
     SceneDescription scene = scene_of({made_of(quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), glass),
                                        light(Parallelogram{{-1, 2, -1}, {2, 0, 0}, {0, 0, 2}}, {1, 1, 1})});
@@ -64,7 +61,7 @@ SceneDescription reflection(float index) {
     return scene;
 }
 
-// A mesh light of which the floor sees one small triangle, straight above; all others are of the same size and look up.
+// A mesh light of `count` equal triangles. The floor sees the first, straight above; all others face up.
 constexpr double small = 1.0 / 2048;
 SceneDescription one_triangle_of(unsigned count) {
     SceneDescription scene = triangle_light();
@@ -98,30 +95,31 @@ Findings check_counted(const Sources &sources, unsigned) {
                     by_power = {{"lighting", "emitter"}, {"emitter-choice", "power"}};
     findings.push_back(counted("one lamp of three", lamps({50, 50}), by_light, lamp, sources));
     findings.push_back(counted("one lamp of 1000", lamps(std::vector<double>(999, 50)), by_light, lamp, sources));
-    // Row and accept are two numbers: their pairs come exactly as often as they should where both shares are even, as
-    // here.
+    // A draw from an alias table takes two numbers, for row and accept. Their pairs come up exactly as often as they
+    // should where both shares are even, as here.
     SceneDescription dim = lamps({1e8});
     dim.point_lights[0].power = {100, 100, 100};
     findings.push_back(counted("a lamp of 1e-6 of another's power", dim, by_power, lamp, sources));
 
     for (float index : {1.001f, 1.01f, 1.33f})
         findings.push_back(counted(fmt::format("reflection, index {}", index), reflection(index),
-                                   {{"lighting", "bsdf"}, {"rr", "off"}}, fresnel_at_normal(1, double(index)),
+                                   {{"lighting", "bsdf"}, {"rr", "off"}}, fresnel_reflectance(1, 1, double(index)),
                                    sources));
 
     for (const char *choice : {"area", "uniform"})
         findings.push_back(counted(fmt::format("one triangle of 100 003 by {}", choice), one_triangle_of(100003),
                                    {{"lighting", "emitter"}, {"triangle-choice", choice}}, one_triangle_truth(),
                                    sources));
-    // No choice at all: every path is the series 1 + a + a^2 + ..., in one sum.
+    // Without any choice every path sums the series 1 + a + a^2 + ...
     for (double albedo : {0.9, 0.99, 0.999}) {
         SceneDescription scene = furnace(albedo, 1);
         scene.meshes[0].bsdf.record.u.diffuse.use_cosine = 1;
-        Shot shot;
-        shot.sources = &sources;
+        RenderSetup setup;
+        setup.sources = &sources;
         scene.camera.width = scene.camera.height = 2;
         const double truth = 1 / (1 - double(float(albedo)));
-        const double got = sample_of(render(with(scene, {{"lighting", "bsdf"}, {"rr", "off"}}), 4, 0, shot), 0).mean;
+        const double got =
+            sample_of(render(with_strategy(scene, {{"lighting", "bsdf"}, {"rr", "off"}}), 4, 0, setup), 0).mean;
         findings.push_back(exact(
             fmt::format("furnace of albedo {}: {:.9g}, not {:.9g}, off by {:.2g}", albedo, got, truth, got / truth - 1),
             std::abs(got / truth - 1) <= counted_limit));
@@ -132,8 +130,8 @@ Findings check_counted(const Sources &sources, unsigned) {
 Findings check_choices(const Sources &sources, unsigned) {
     Findings findings;
     const Vec3 wi = normalize({0.8, 0, 0.6}), mirrored{-wi.x, -wi.y, wi.z};
-    // `stated`: the probability by the density. Of the numbers of the lobe around it, those below and no others choose
-    // what comes first.
+    // stated: the probability that the density implies; wished: the one that the material asks for. Of the numbers
+    // around `stated` exactly those below it must choose the first part.
     const auto judge = [&](const std::string &what, KernelProbe &probe, double stated, double wished) {
         const double k = std::round(std::ldexp(stated, 24));
         Planes numbers(3, 8);
@@ -166,23 +164,22 @@ Findings check_choices(const Sources &sources, unsigned) {
             return double(probe.bsdf_eval(0, wi, std::vector{wo}).at(EVAL_PDF, 0));
         };
         const auto coated = [](float ks) {
-            BsdfRecord record = bsdf_record(BSDF_microfacet, 1 - ks);
+            BsdfRecord record = examples::microfacet(0.2, 1 - ks);
             record.u.microfacet.alpha = 0.001f;
             record.u.microfacet.ks = ks;
             return record;
         };
-        KernelProbe half =
-            probe_of(coated(0.5f)); // drawn as wished: it tells the density of the coat alone, beside the base's
+        KernelProbe half = probe_of(coated(0.5f)); // half of each part: its density gives that of the coat alone
         const double base = wi.z / pi, coat = 2 * density(half, mirrored) - base;
         for (float share : {1e-6f, 3e-4f, 0.3f}) {
-            BsdfRecord phong = bsdf_record(BSDF_phong);
+            BsdfRecord phong = examples::phong(20);
             phong.u.phong.pd = share;
-            phong.u.phong.n = 1e4f; // nothing of the lobe goes back to the viewer
+            phong.u.phong.n = 1e4f; // so narrow that the lobe is black towards the viewer
             KernelProbe probe = probe_of(phong);
             judge(fmt::format("Phong's diffuse part at {} lanes", lanes), probe, density(probe, wi) * pi / wi.z,
                   double(share));
             if (share > 0.1f)
-                continue; // densities are floats: more numbers than they tell apart
+                continue; // a float density cannot tell so many numbers apart
             KernelProbe coated_probe = probe_of(coated(share));
             judge(fmt::format("the microfacets' coat at {} lanes", lanes), coated_probe,
                   (density(coated_probe, mirrored) - base) / (coat - base), double(share));

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <filesystem>
 
 namespace opal::test {
@@ -13,8 +12,7 @@ namespace opal::test {
 const Device &device() {
     static const Device opened = [] {
         set_probe_binary(OPAL_BINARY);
-        const char *wanted = std::getenv("OPAL_TEST_DEVICE");
-        return open_device(pick_device(wanted ? wanted : "cpu", list_devices()).info);
+        return open_device(pick_device(wanted_device(), list_devices()).info);
     }();
     return opened;
 }

@@ -13,10 +13,10 @@ namespace opal::test {
 
 const Device &device();
 
-// 1 and the device's own width, the two that every kernel test is run at.
+// The widths of every kernel test: 1 and the device's own.
 std::vector<int> tested_lanes();
 
-// All features on, but for those `without` (FEATURE_*), and every axis decided at run time.
+// All features on but those `without` (FEATURE_*), every axis decided at run time.
 Features all_features(const std::vector<unsigned> &without = {});
 
 // Opal's own sources with those below tests/device/ as "tests/NAME.cl" among them.
@@ -30,7 +30,7 @@ cl::Program program(const std::string &kernels, int lanes, const Features &featu
 cl::Program program_of(const std::string &text, int lanes, const Features &features = all_features(),
                        MathMode math = MathMode::precise);
 
-// A kernel's output: what a test passes as Output<T>{count}, and reads after run().
+// A kernel's output of `count` values: an argument of run(), which read() then copies back.
 template <class T> struct Output {
     size_t count;
     cl::Buffer buffer = make_zeros<T>(device(), count, "a test's output");

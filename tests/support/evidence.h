@@ -1,4 +1,4 @@
-// Whole images judged by statistics; what disagrees is left on the disk.
+// Whole images judged by statistics; images that disagree are left on the disk.
 #pragma once
 
 #include "compare/evidence.h"

@@ -17,8 +17,8 @@ namespace {
 constexpr unsigned pixels = 3;
 constexpr unsigned samples = 1u << 18;
 
-// Slots of `samples` samples a pixel: pixel 0 one value throughout, which a plain sum of floats rounds away from some
-// size on; pixel 1 of very different sizes; pixel 2 with NaN and infinity among them.
+// `samples` samples a pixel. Pixel 0: one value throughout, which a plain sum of floats would lose as it grows. Pixel
+// 1: very different sizes. Pixel 2: with NaN and infinity among them.
 std::vector<float> slots_of(unsigned seed) {
     std::mt19937 random(seed);
     std::vector<float> slots(size_t(3) * pixels * samples);
@@ -96,11 +96,11 @@ Findings check_passes(const Sources &sources, unsigned seed) {
     for (int lanes : tested_lanes()) {
         std::vector<Film> films;
         for (unsigned most : {0u, 3u}) {
-            Shot shot;
-            shot.lanes = lanes;
-            shot.sources = &sources;
-            shot.max_pass_samples = most;
-            films.push_back(render(with(gallery(9, 9), {{"specialise", "off"}}), 17, seed, shot));
+            RenderSetup setup;
+            setup.lanes = lanes;
+            setup.sources = &sources;
+            setup.max_pass_samples = most;
+            films.push_back(render(with_strategy(gallery(9, 9), {{"specialise", "off"}}), 17, seed, setup));
         }
         findings.push_back(exact("sums", films[0].sum == films[1].sum));
         findings.push_back(exact("squares", films[0].squares == films[1].squares));

@@ -14,7 +14,7 @@ namespace {
 struct NamedFilter {
     std::string name;
     Filter filter;
-    std::function<double(double)> weight; // of a distance (SCENE_FORMAT section 3)
+    std::function<double(double)> weight; // of a distance
 };
 
 double mitchell(double x) { // Mitchell and Netravali 1988, B = C = 1/3, radius 2
@@ -49,7 +49,7 @@ SceneDescription half_lit(double edge) {
     // -1.
     const double x = 1 - 2 * edge / width;
     SceneDescription scene = scene_of({light(Parallelogram{{x, -90, 1}, {0, 180, 0}, {50, 0, 0}}, {1, 1, 1})});
-    scene.meshes[0].bsdf.record = bsdf_record(BSDF_diffuse, 0);
+    scene.meshes[0].bsdf.record = diffuse(0);
     scene.camera.width = width;
     scene.camera.height = height;
     scene.camera.fov = 90;
@@ -60,10 +60,10 @@ SceneDescription half_lit(double edge) {
 Film filtered(SceneDescription scene, const Filter &filter, unsigned spp, unsigned seed, const Sources &sources) {
     scene.camera.filter = filter;
     scene.spp = spp;
-    Shot shot;
-    shot.sources = &sources;
-    return render(with(std::move(scene), {{"lighting", "bsdf"}, {"rr", "off"}, {"sampler", "stratified"}}), spp, seed,
-                  shot);
+    RenderSetup setup;
+    setup.sources = &sources;
+    return render(with_strategy(std::move(scene), {{"lighting", "bsdf"}, {"rr", "off"}, {"sampler", "stratified"}}),
+                  spp, seed, setup);
 }
 
 double value(const Film &film, int x, int y) {
@@ -71,7 +71,7 @@ double value(const Film &film, int x, int y) {
     return film.weighted.empty() ? film.sum[p][0] / film.count[p] : film.weighted[p][0] / film.weighted[p][3];
 }
 
-// Rows far enough apart to share no sample.
+// f of rows far enough apart to share no sample.
 template <class F> stats::Sample over_rows(const Film &film, F f) {
     stats::Moments moments;
     for (int y = 2; y + 2 < film.height; y += 4)
@@ -95,23 +95,23 @@ Findings check_filters(const Sources &sources, unsigned seed) {
         const double edge = middle + 0.3;
         const Film film = filtered(half_lit(edge), f.filter, spp, seed + 1, sources);
         const double whole = integral(f.weight, -2, 2);
-        if (!film.weighted.empty()) // per sample of a pixel, those of all pixels around together
-            findings.push_back({f.name + ": the weights' sum",
-                                stats::t_test(over_rows(film,
-                                                        [&](int y) {
-                                                            double sum = 0;
-                                                            for (int x = 2; x + 2 < width; x += 4)
-                                                                sum += film.weighted[size_t(y) * width + size_t(x)][3] /
-                                                                       spp / 3;
-                                                            return sum;
-                                                        }),
-                                              whole * whole)
-                                    .p_value});
+        if (!film.weighted.empty()) // a pixel gets the weights of all samples around it
+            findings.push_back(p_value(
+                f.name + ": the weights' sum",
+                stats::t_test(over_rows(film,
+                                        [&](int y) {
+                                            double sum = 0;
+                                            for (int x = 2; x + 2 < width; x += 4)
+                                                sum += film.weighted[size_t(y) * width + size_t(x)][3] / spp / 3;
+                                            return sum;
+                                        }),
+                              whole * whole)
+                    .p_value));
         for (int x = middle - 3; x <= middle + 3; x++) {
             const double lit_share = integral(f.weight, -2, std::clamp(edge - (x + 0.5), -2.0, 2.0)) / whole;
             findings.push_back(
-                {f.name + ": edge at column " + std::to_string(x),
-                 stats::t_test(over_rows(film, [&](int y) { return value(film, x, y); }), lit_share).p_value});
+                p_value(f.name + ": edge at column " + std::to_string(x),
+                        stats::t_test(over_rows(film, [&](int y) { return value(film, x, y); }), lit_share).p_value));
         }
     }
     return findings;

@@ -2,6 +2,7 @@
 // at the device's width. As in support/checks.h: a right kernel passes, its mutants must not.
 #pragma once
 
+#include "support/cases.h"
 #include "support/checks.h"
 
 namespace opal::test {
@@ -16,12 +17,18 @@ Findings check_tree(const Sources &sources, unsigned seed);       // closest and
 Findings check_tiny(const Sources &sources, unsigned seed);       // the same without a tree
 Findings check_watertight(const Sources &sources, unsigned seed); // rays at edges and vertices of closed meshes
 
-Findings check_warps(const Sources &sources, unsigned seed);      // chi-square against the density
-Findings check_bsdfs(const Sources &sources, unsigned seed);      // the same, and weight = f cos / pdf, and reciprocity
-Findings check_albedos(const Sources &sources, unsigned seed);    // microfacet against quadrature; none above 1
-Findings check_refraction(const Sources &sources, unsigned seed); // Snell's law and Fresnel's formulas in double
-Findings check_choices(const Sources &sources, unsigned seed);    // shares of BSDFs' parts, number by number
-Findings check_emitters(const Sources &sources, unsigned seed);   // points against their density, all ways to choose
+Findings check_warps(const Sources &sources, unsigned seed);        // warp_findings of selftest's warps and two more
+Findings check_bsdfs(const Sources &sources, unsigned seed);        // check_materials of tests/cases/bsdfs
+Findings check_albedos(const Sources &sources, unsigned seed);      // microfacet against quadrature
+Findings check_refraction(const Sources &sources, unsigned seed);   // Snell's law and Fresnel's formulas in double
+Findings check_choices(const Sources &sources, unsigned seed);      // shares of BSDFs' parts, number by number
+Findings check_emitters(const Sources &sources, unsigned seed);     // check_lights of tests/cases/emitters
 Findings check_trigonometry(const Sources &sources, unsigned seed); // cos_sin_2pi against double
+
+// material_findings of these materials.
+Findings check_materials(const std::vector<Material> &materials, const Sources &sources, unsigned seed);
+// Points on each light, and on all in one scene, against their density, for all ways to choose emitters and triangles;
+// densities of points against those of rays that hit them.
+Findings check_lights(const std::vector<LightCase> &cases, const Sources &sources, unsigned seed);
 
 } // namespace opal::test

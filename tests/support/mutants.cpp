@@ -24,6 +24,16 @@ Sources mutated(const Sources &sources, const Mutant &mutant) {
     return changed;
 }
 
+std::string write_kernels(const ScratchFolder &folder, const Sources &sources) {
+    for (const auto &[name, text] : sources.files)
+        folder.write("cl/" + name, text);
+    return (folder / "cl").string();
+}
+
+std::string write_kernels(const ScratchFolder &folder, const Mutant &mutant) {
+    return write_kernels(folder, mutated(Sources::embedded(), mutant));
+}
+
 void require_all_killed(const std::vector<Control> &controls, unsigned seed) {
     size_t killed = 0, run = 0;
     for (const Control &control : controls) {
@@ -37,9 +47,8 @@ void require_all_killed(const std::vector<Control> &controls, unsigned seed) {
         const Findings findings = control.check(sources, seed);
         const bool dead = rejected(findings);
         killed += dead;
-        const Finding &by = worst(findings);
-        fmt::print("{} by {:<14} {} (cl/{}): {}, p = {:.2g}\n", dead ? "killed  " : "SURVIVED", control.check_name,
-                   control.mutant.name, control.mutant.file, by.what, by.p);
+        fmt::print("{} by {:<14} {} (cl/{}): {}\n", dead ? "killed  " : "SURVIVED", control.check_name,
+                   control.mutant.name, control.mutant.file, text_of(worst(findings)));
         std::fflush(stdout);
         CHECK(dead);
     }

@@ -2,19 +2,23 @@
 #pragma once
 
 #include "support/checks.h"
+#include "support/scratch.h"
 
 namespace opal::test {
 
 struct Mutant {
-    std::string name;     // what is wrong with it
-    std::string file;     // below cl/
-    std::string from, to; // `from` must be in the file exactly once
-    bool many_lanes =
-        false; // only programs of more than one lane run it: left out where the device is tested at one lane alone
+    std::string name;        // what is wrong with it
+    std::string file;        // below cl/
+    std::string from, to;    // `from` must be in the file exactly once
+    bool many_lanes = false; // not in programs of one lane: left out where the device is tested at one lane alone
 };
 
 // The sources with that one change. Throws Error where the text is not there, or more than once.
 Sources mutated(const Sources &sources, const Mutant &mutant);
+
+// Writes the sources to `folder`/cl, as --cl-dir takes them, and returns that path.
+std::string write_kernels(const ScratchFolder &folder, const Sources &sources);
+std::string write_kernels(const ScratchFolder &folder, const Mutant &mutant); // Opal's own with that change
 
 // A mutant and the check that must reject it.
 struct Control {

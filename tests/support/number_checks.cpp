@@ -1,8 +1,7 @@
-// The random numbers.
-#include "probe/kernel_probe.h"
+// The random numbers: known values, strata, elementary intervals, independence.
 #include "stats/hypothesis.h"
-#include "support/device.h"
 #include "support/kernel_checks.h"
+#include "support/probe.h"
 
 #include <fmt/format.h>
 
@@ -14,29 +13,26 @@ namespace opal::test {
 
 namespace {
 
-KernelProbe probe_at(int lanes, const Sources &sources) {
-    BuildOptions build;
-    build.lanes = lanes;
-    return KernelProbe(device(), scene_of_bsdfs({}), build, sources);
-}
+KernelProbe probe_at(int lanes, const Sources &sources) { return probe_of(scene_of_bsdfs({}), lanes, sources); }
 
 unsigned bits24(float u) { return unsigned(std::ldexp(double(u), 24)); } // exact: every number is k 2^-24
 
-struct Known {
+struct KnownNumbers {
     unsigned index;       // sample 3 index of pixel 7 index, seed 42
     unsigned pairs[3][2]; // of dimensions 4, 5, 6, times 2^24
 };
 
-// Computed apart from Opal, in whole numbers, from the papers' definitions (pcg3d, pcg4d, Sobol's second dimension by
+// Computed in integers by a separate program from the papers' definitions (pcg3d, pcg4d, Sobol's second dimension by
 // its direction numbers, Laine-Karras with Vegdahl's constants).
-constexpr Known independent_numbers[] = {{0, {{6313979, 10456319}, {4572304, 13315532}, {11795585, 12854500}}},
-                                         {1, {{1980249, 9935642}, {13202335, 2018448}, {7277339, 6906205}}},
-                                         {1000, {{5793495, 7366603}, {16207522, 12532365}, {3660511, 12038522}}}};
-constexpr Known sobol_numbers[] = {{0, {{8323467, 6357171}, {7829070, 6918955}, {10348780, 13447596}}},
-                                   {1, {{3570071, 6700649}, {9709999, 621273}, {9936181, 4669739}}},
-                                   {1000, {{14118383, 12703861}, {8826045, 12664601}, {15062492, 5168681}}}};
+constexpr KnownNumbers independent_numbers[] = {
+    {0, {{6313979, 10456319}, {4572304, 13315532}, {11795585, 12854500}}},
+    {1, {{1980249, 9935642}, {13202335, 2018448}, {7277339, 6906205}}},
+    {1000, {{5793495, 7366603}, {16207522, 12532365}, {3660511, 12038522}}}};
+constexpr KnownNumbers sobol_numbers[] = {{0, {{8323467, 6357171}, {7829070, 6918955}, {10348780, 13447596}}},
+                                          {1, {{3570071, 6700649}, {9709999, 621273}, {9936181, 4669739}}},
+                                          {1000, {{14118383, 12703861}, {8826045, 12664601}, {15062492, 5168681}}}};
 
-bool has(const Planes &numbers, const Known &known) {
+bool has(const Planes &numbers, const KnownNumbers &known) {
     bool same = true;
     for (size_t pair = 0; pair < 3; pair++)
         for (size_t i = 0; i < 2; i++)
@@ -58,8 +54,8 @@ Finding uncorrelated(const std::string &what, const Planes &a, size_t plane_a, c
     const size_t n = a.count - shift;
     for (size_t i = 0; i < n; i++)
         sum += (double(a.at(plane_a, i)) - 0.5) * (double(b.at(plane_b, i + shift)) - 0.5);
-    return {what,
-            stats::two_sided_p(sum / double(n) * 12 * std::sqrt(double(n)), INFINITY)}; // variance of a product: 1/144
+    const double variance = 1.0 / 144; // of a product of two numbers
+    return p_value(what, stats::two_sided_p(sum / double(n) / std::sqrt(variance / double(n)), INFINITY));
 }
 
 // 16 x 16 cells of pairs.
@@ -69,7 +65,7 @@ Finding uniform_pairs(const std::string &what, const Planes &a, size_t plane_a, 
     const size_t n = a.count - shift;
     for (size_t i = 0; i < n; i++)
         observed[size_t(a.at(plane_a, i) * 16) * 16 + size_t(b.at(plane_b, i + shift) * 16)]++;
-    return {what, stats::chi_square_test(observed, std::vector<double>(256, double(n) / 256)).p_value};
+    return p_value(what, stats::chi_square_test(observed, std::vector<double>(256, double(n) / 256)).p_value);
 }
 
 } // namespace
@@ -83,17 +79,17 @@ Findings check_known_numbers(const Sources &sources, unsigned) {
         options.first_dimension = 4;
         options.pixel_step = 7;
         options.sample_step = 3;
-        const std::string where = " at " + std::to_string(lanes) + " lanes";
+        const std::string where = at_width(lanes);
         const Planes independent = probe.numbers(1001, options);
-        for (const Known &known : independent_numbers)
+        for (const KnownNumbers &known : independent_numbers)
             findings.push_back(
                 exact("independent numbers of index " + std::to_string(known.index) + where, has(independent, known)));
         options.sampler = CHOICE_sampler_sobol;
         const Planes sobol = probe.numbers(1001, options);
-        for (const Known &known : sobol_numbers)
+        for (const KnownNumbers &known : sobol_numbers)
             findings.push_back(
                 exact("Sobol numbers of index " + std::to_string(known.index) + where, has(sobol, known)));
-        // Every sampler, many strata of awkward number: the largest float below 1 is the most there is.
+        // Every sampler, also with awkward numbers of strata, stays below 1.
         for (int sampler : {CHOICE_sampler_independent, CHOICE_sampler_stratified, CHOICE_sampler_sobol})
             for (unsigned spp : {1u, 7u, 1000u, 65521u}) {
                 options.sampler = sampler;
@@ -121,7 +117,7 @@ Findings check_sobol(const Sources &sources, unsigned seed) {
         NumberOptions options;
         options.sampler = CHOICE_sampler_sobol;
         for (unsigned pixel = 0; pixel < 4; pixel++) {
-            // One pixel's samples: the step is 0, so that the index counts samples; other pixels by other seeds.
+            // A pixel step of 0: the index counts the samples of one pixel. Other pixels are other seeds.
             options.seed = seed + pixel;
             const Planes numbers = probe.numbers(1024, options);
             for (size_t pair = 0; pair < OPAL_PROBE_PAIRS; pair++)
@@ -173,8 +169,8 @@ Findings check_stratified(const Sources &sources, unsigned seed) {
                 findings.push_back(exact("each dimension and round in an order of its own", orders.size() == 6));
         }
     }
-    // Where there are more strata than samples, all are left out alike: the samples past spp of a round fall into
-    // those.
+    // Where there are more strata than samples, all strata are left out equally often. The samples past spp of a round
+    // fall into those that were left out.
     KernelProbe probe = probe_at(tested_lanes().back(), sources);
     for (unsigned spp : {11u, 17u, 18u, 19u, 21u, 22u, 23u, 37u, 43u}) {
         const unsigned columns = unsigned(std::sqrt(double(spp))), rows = (spp + columns - 1) / columns,
@@ -197,10 +193,10 @@ Findings check_stratified(const Sources &sources, unsigned seed) {
             }
             for (const std::vector<double> &counts : {left_out, by_column, by_row}) {
                 const double all = std::accumulate(counts.begin(), counts.end(), 0.0);
-                findings.push_back(
-                    {fmt::format("strata left out alike at {} samples", spp),
-                     stats::chi_square_test(counts, std::vector<double>(counts.size(), all / double(counts.size())))
-                         .p_value});
+                findings.push_back(p_value(
+                    fmt::format("strata left out alike at {} samples", spp),
+                    stats::chi_square_test(counts, std::vector<double>(counts.size(), all / double(counts.size())))
+                        .p_value));
             }
         }
     }
@@ -217,14 +213,14 @@ Findings check_independence(const Sources &sources, unsigned seed) {
         options.sampler = sampler;
         options.seed = seed;
         options.spp = 16;
-        // One sample of each pixel: its number looks independent of its neighbours', whatever the sampler.
+        // One sample of each pixel: numbers of neighbouring pixels look independent, whatever the sampler.
         options.sample_step = 0;
         options.pixel_step = 1;
         const Planes pixels = probe.numbers(count, options);
         options.seed = seed + 1;
         const Planes other_seed = probe.numbers(count, options);
         std::vector<double> values(pixels.values.begin(), pixels.values.begin() + count);
-        findings.push_back({name + "uniform over pixels", stats::ks_uniform_test(values).p_value});
+        findings.push_back(p_value(name + "uniform over pixels", stats::ks_uniform_test(values).p_value));
         for (size_t shift : {1u, 2u, 16u, 400u}) {
             findings.push_back(
                 uncorrelated(name + "pixels " + std::to_string(shift) + " apart", pixels, 0, pixels, 0, shift));

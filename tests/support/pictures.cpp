@@ -7,7 +7,7 @@
 
 namespace opal::test {
 
-SceneDescription with(SceneDescription scene, const Overrides &overrides) {
+SceneDescription with_strategy(SceneDescription scene, const Overrides &overrides) {
     override_strategy(scene.strategy, overrides);
     if (const auto named = overrides.find("integrator"); named != overrides.end())
         scene.integrator_type = named->second;
@@ -15,27 +15,28 @@ SceneDescription with(SceneDescription scene, const Overrides &overrides) {
     return scene;
 }
 
-Renderer renderer_of(const SceneDescription &scene, const Shot &shot) {
+Renderer renderer_of(const SceneDescription &scene, const RenderSetup &setup) {
     RenderOptions options;
-    options.build.lanes = lanes_for(device().info, shot.lanes, shot.math);
-    options.build.math = shot.math;
-    options.sources = shot.sources;
-    options.max_pass_samples = shot.max_pass_samples;
+    options.build.lanes = lanes_for(device().info, setup.lanes, setup.math);
+    options.build.math = setup.math;
+    options.sources = setup.sources;
+    options.max_pass_samples = setup.max_pass_samples;
     return Renderer(device(), flatten(scene, options.build.lanes), options);
 }
 
-Film render(const SceneDescription &scene, unsigned spp, unsigned seed, const Shot &shot) {
-    Renderer renderer = renderer_of(scene, shot);
+Film render(const SceneDescription &scene, unsigned spp, unsigned seed, const RenderSetup &setup) {
+    Renderer renderer = renderer_of(scene, setup);
     renderer.restart(seed);
     renderer.render(spp);
     return renderer.film();
 }
 
 stats::Sample sample_of(const Film &film, int channel) {
-    const std::array<double, 3> weights = channel == 3   ? std::array<double, 3>{0.212671, 0.715160, 0.072169}
-                                          : channel == 0 ? std::array<double, 3>{1, 0, 0}
-                                          : channel == 1 ? std::array<double, 3>{0, 1, 0}
-                                                         : std::array<double, 3>{0, 0, 1};
+    Color weights = luminance_weights;
+    if (channel < 3) {
+        weights = {0, 0, 0};
+        weights[size_t(channel)] = 1;
+    }
     double samples = 0, mean = 0, variance = 0; // variance of the mean
     const double pixels = double(film.sum.size());
     for (size_t p = 0; p < film.sum.size(); p++) {

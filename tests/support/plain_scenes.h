@@ -1,29 +1,26 @@
-// Scenes written in C++, and what tests ask of a flattened one.
+// Scenes written in C++, and questions to a flattened one.
 #pragma once
 
 #include "flatten/flat_scene.h"
+#include "scene/examples.h"
 
 #include <stdexcept>
 
 namespace opal {
 
-inline TriangleMesh mesh_of(std::vector<Vec3> positions, std::vector<std::array<unsigned, 3>> triangles) {
-    TriangleMesh mesh;
-    mesh.positions = std::move(positions);
-    for (const auto &[a, b, c] : triangles)
-        mesh.triangles.push_back({{{a, OPAL_NONE}, {b, OPAL_NONE}, {c, OPAL_NONE}}});
-    return mesh;
+using examples::cube;
+using examples::diffuse;
+using examples::made_of;
+using examples::mesh_of;
+using examples::quad;
+using examples::Shape;
+
+// A mesh of the material diffuse(albedo, use_cosine).
+inline Mesh diffuse(Shape shape, double albedo = 0.5, bool use_cosine = false) {
+    return made_of(std::move(shape), diffuse(albedo, use_cosine));
 }
 
-inline Mesh diffuse(std::variant<TriangleMesh, Parallelogram> shape, float albedo = 0.5f, bool use_cosine = false) {
-    Mesh mesh;
-    mesh.shape = std::move(shape);
-    mesh.bsdf.record.kind = BSDF_diffuse;
-    mesh.bsdf.record.u.diffuse = {{albedo, albedo, albedo}, use_cosine};
-    return mesh;
-}
-
-inline Mesh light(std::variant<TriangleMesh, Parallelogram> shape, Color radiance) {
+inline Mesh light(Shape shape, Color radiance) {
     Mesh mesh = diffuse(std::move(shape));
     mesh.radiance = radiance;
     return mesh;

@@ -1,7 +1,6 @@
-// Preloaded into opal, this library lets a device answer some questions as another device would. $OPAL_POSE names what:
-// "gpu" (its type), "vectors-of-2" (floats), "no-fp64". So the host's code for GPUs and for poorer devices runs in
-// tests, on the CPU that is there. The file $OPAL_LAUNCHES gets a line for each launch: the kernel, its work-group's
-// size.
+// A library that tests preload into opal, so that a CPU device poses as another: the host's code for GPUs and for
+// poorer devices then runs without one. $OPAL_POSE lists what it claims: "gpu" (its type), "vectors-of-2" (floats),
+// "no-fp64". The file $OPAL_LAUNCHES gets a line for each launch: the kernel and the size of its work-groups.
 #include <CL/cl.h>
 
 #include <cstdio>

@@ -46,12 +46,12 @@ SceneDescription room(std::vector<Mesh> meshes, int width, int height, bool blac
     for (Mesh &wall : walls())
         meshes.push_back(std::move(wall));
     meshes.push_back(made_of(quad({-0.2, 0.8, -0.5}, {0, 0, 0.6}, {0.6, 0, 0}),
-                             bsdf_record(BSDF_diffuse))); // a screen near the light
+                             diffuse(0.5))); // a screen near the light
     meshes.push_back(light(fan_light(), {6, 5, 4}));
     meshes.push_back(light(Parallelogram{{-0.98, -0.2, -0.3}, {0, 0.7, 0}, {0, 0, 0.8}}, {2, 4, 7}));
     for (Mesh &mesh : meshes)
         if (black_lights && mesh.radiance)
-            mesh.bsdf.record = bsdf_record(BSDF_diffuse, 0);
+            mesh.bsdf.record = diffuse(0);
     SceneDescription scene = scene_of(std::move(meshes));
     scene.camera = camera({0.1, 0.05, -0.97}, {0, -0.1, 1}, width, height, 85);
     return scene;
@@ -60,51 +60,10 @@ SceneDescription room(std::vector<Mesh> meshes, int width, int height, bool blac
 } // namespace
 
 Camera camera(Vec3 from, Vec3 to, int width, int height, double fov) {
-    Camera camera;
-    const Vec3 d = normalize(to - from);
-    camera.to_world = Transform::look_at(from, to, std::abs(d.y) > 0.9 ? Vec3{0, 0, 1} : Vec3{0, 1, 0});
+    Camera camera = examples::camera(from, to, fov);
     camera.width = width;
     camera.height = height;
-    camera.fov = fov;
     return camera;
-}
-
-TriangleMesh quad(Vec3 o, Vec3 u, Vec3 v) { return mesh_of({o, o + u, o + u + v, o + v}, {{0, 1, 2}, {0, 2, 3}}); }
-
-TriangleMesh cube(Vec3 center, double size, bool inwards) {
-    TriangleMesh mesh;
-    for (unsigned corner = 0; corner < 8; corner++)
-        mesh.positions.push_back(center +
-                                 Vec3{corner & 1 ? size : -size, corner & 2 ? size : -size, corner & 4 ? size : -size});
-    const unsigned faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                  {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}; // outwards
-    for (const auto &f : faces)
-        for (unsigned i : {1u, 2u}) {
-            const unsigned b = f[inwards ? i + 1 : i], c = f[inwards ? i : i + 1];
-            mesh.triangles.push_back({{{f[0], OPAL_NONE}, {b, OPAL_NONE}, {c, OPAL_NONE}}});
-        }
-    return mesh;
-}
-
-BsdfRecord bsdf_record(int kind, float reflectance) {
-    BsdfRecord record{};
-    record.kind = uint(kind);
-    const float r = reflectance;
-    if (kind == BSDF_diffuse)
-        record.u.diffuse = {{r, r, r}, 1};
-    if (kind == BSDF_dielectric)
-        record.u.dielectric = {1.5f, 1};
-    if (kind == BSDF_microfacet)
-        record.u.microfacet = {0.2f, 1.5f, 1, 1 - r, {r, r, r}};
-    if (kind == BSDF_phong)
-        record.u.phong = {{r, r, r}, 0.5f, {r, r, r}, 20};
-    return record;
-}
-
-Mesh made_of(TriangleMesh shape, const BsdfRecord &bsdf) {
-    Mesh mesh = diffuse(std::move(shape));
-    mesh.bsdf.record = bsdf;
-    return mesh;
 }
 
 SceneDescription furnace(double albedo, double emitted) {
@@ -120,7 +79,7 @@ SceneDescription glass_furnace() {
     const TriangleMesh tetrahedron =
         mesh_of({{-0.8, -0.7, -0.6}, {0.9, -0.6, -0.7}, {0.1, -0.5, 0.95}, {0.15, 0.85, -0.1}},
                 {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}});
-    scene.meshes.push_back(made_of(tetrahedron, bsdf_record(BSDF_dielectric)));
+    scene.meshes.push_back(made_of(tetrahedron, examples::dielectric()));
     scene.camera = camera({0.1, -0.3, -0.2}, {0.3, 0, 1}, 8, 8, 70);
     return scene;
 }
@@ -155,7 +114,7 @@ Vec3 smooth_normal() { return normalize({0.5, 0.3, 0.2}); }
 
 SceneDescription smooth_octahedron() {
     const Vec3 center{0.3, -0.2, 0.1};
-    SceneDescription scene = scene_of({made_of(octahedron(center, 0.7), bsdf_record(BSDF_diffuse))});
+    SceneDescription scene = scene_of({made_of(octahedron(center, 0.7), diffuse(0.5))});
     scene.strategy[AXIS_integrator] = CHOICE_integrator_normals;
     scene.camera = camera({2, 1.5, 1}, center + Vec3{0.5, 0.3, 0.2} * 0.7, 4, 4, 1e-3);
     return scene;
@@ -174,19 +133,19 @@ double point_light_truth() {
 }
 
 SceneDescription gallery(int width, int height) {
-    return room({made_of(quad({0.98, -0.6, -0.2}, {0, 0, 0.8}, {0, 0.9, 0}), bsdf_record(BSDF_mirror)),
-                 made_of(quad({-0.8, -0.7, 0.97}, {0, 0.9, 0}, {0.8, 0, 0}), bsdf_record(BSDF_microfacet, 0.3f)),
-                 made_of(quad({-0.8, -0.97, -0.6}, {0, 0, 0.9}, {0.8, 0, 0}), bsdf_record(BSDF_phong, 0.7f)),
-                 made_of(cube({0.35, -0.6, 0.3}, 0.25), bsdf_record(BSDF_dielectric)),
-                 made_of(octahedron({-0.4, -0.5, 0.3}, 0.35), bsdf_record(BSDF_diffuse, 0.7f))},
+    return room({made_of(quad({0.98, -0.6, -0.2}, {0, 0, 0.8}, {0, 0.9, 0}), examples::mirror()),
+                 made_of(quad({-0.8, -0.7, 0.97}, {0, 0.9, 0}, {0.8, 0, 0}), examples::microfacet(0.2, 0.3)),
+                 made_of(quad({-0.8, -0.97, -0.6}, {0, 0, 0.9}, {0.8, 0, 0}), examples::phong(20, 0.7)),
+                 made_of(cube({0.35, -0.6, 0.3}, 0.25), examples::dielectric()),
+                 made_of(octahedron({-0.4, -0.5, 0.3}, 0.35), diffuse(0.7))},
                 width, height, false);
 }
 
 SceneDescription matte_gallery(int width, int height) {
-    return room({made_of(quad({-0.8, -0.7, 0.97}, {0, 0.9, 0}, {0.8, 0, 0}), bsdf_record(BSDF_microfacet, 0.3f)),
-                 made_of(quad({-0.8, -0.97, -0.6}, {0, 0, 0.9}, {0.8, 0, 0}), bsdf_record(BSDF_phong, 0.7f)),
-                 made_of(cube({0.35, -0.6, 0.3}, 0.25), bsdf_record(BSDF_diffuse)),
-                 made_of(octahedron({-0.4, -0.5, 0.3}, 0.35), bsdf_record(BSDF_diffuse, 0.7f))},
+    return room({made_of(quad({-0.8, -0.7, 0.97}, {0, 0.9, 0}, {0.8, 0, 0}), examples::microfacet(0.2, 0.3)),
+                 made_of(quad({-0.8, -0.97, -0.6}, {0, 0, 0.9}, {0.8, 0, 0}), examples::phong(20, 0.7)),
+                 made_of(cube({0.35, -0.6, 0.3}, 0.25), diffuse(0.5)),
+                 made_of(octahedron({-0.4, -0.5, 0.3}, 0.35), diffuse(0.7))},
                 width, height, true);
 }
 

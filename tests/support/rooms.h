@@ -1,5 +1,5 @@
-// Small scenes whose pictures are known, or hold a bit of everything. All are path tracers with MIS unless a test says
-// otherwise.
+// Small scenes: some with a known picture, some with every material and light. All are path-traced with MIS unless a
+// test says otherwise.
 #pragma once
 
 #include "support/plain_scenes.h"
@@ -9,27 +9,17 @@ namespace opal::test {
 // A camera of width x height pixels at `from`, looking at `to` with that full horizontal angle, box filter.
 Camera camera(Vec3 from, Vec3 to, int width, int height, double fov = 60);
 
-// The quadrilateral o, o + u, o + v, o + u + v that faces u x v, as two triangles.
-TriangleMesh quad(Vec3 o, Vec3 u, Vec3 v);
-
-// The cube [-size, size]^3 around `center`, 12 triangles, facing outwards (inwards where `inwards`).
-TriangleMesh cube(Vec3 center, double size, bool inwards = false);
-
-// Record of a BSDF with its usual parameters, grey of that reflectance where it has one.
-BsdfRecord bsdf_record(int kind, float reflectance = 0.5f);
-Mesh made_of(TriangleMesh shape, const BsdfRecord &bsdf);
-
 // A closed cube whose walls have that albedo and emit that radiance, seen from inside. Radiance is the same L at every
 // point in every direction, so L = emitted + albedo L: every pixel of every full path tracer has the mean emitted / (1
 // - albedo).
 SceneDescription furnace(double albedo, double emitted);
 
-// Black walls that emit 1, and the camera inside a tetrahedron of glass (index 1.5 in vacuum) within them, irregular so
-// that no path is caught for ever. A path carries weight 1 on each reflection and (n_inside / n_outside)^2 when it
-// leaves the glass: every sample is 1.5^2.
+// The camera inside a tetrahedron of glass (index 1.5 in vacuum), within black walls that emit 1. The tetrahedron is
+// irregular, so that no path is caught for ever. A reflection has weight 1, leaving the glass (n_inside / n_outside)^2:
+// every sample is 1.5^2.
 SceneDescription glass_furnace();
 
-// The same light with its back to the floor.
+// triangle_light with the light's back to the floor.
 SceneDescription averted_light();
 
 // An octahedron with a normal at each vertex that points away from its middle, so that the interpolated one does so
@@ -37,9 +27,8 @@ SceneDescription averted_light();
 SceneDescription smooth_octahedron();
 Vec3 smooth_normal();
 
-// A triangle that emits (3, 2, 1) above a diffuse floor of albedo 0.8, one bounce, in an empty world. The camera looks
-// at the floor through a tiny angle about `triangle_light_point`, so that one number is the truth
-// (triangle_light_truth).
+// A triangle that emits (3, 2, 1) above a diffuse floor of albedo 0.8, one bounce, in an empty world. The camera sees
+// the floor through a tiny angle, so that all pixels have the radiance triangle_light_truth().
 SceneDescription triangle_light();
 // Lambert's formula (1760) for the irradiance from a uniform polygon: E = L/2 sum_i angle_i cos(n, normal of the plane
 // through the point and edge i); the radiance that leaves is albedo / pi E. Red, with L = 3.

@@ -43,4 +43,9 @@ Outcome run_shell(const std::string &command) {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_text(out), read_text(err)};
 }
 
+std::string wanted_device() {
+    const char *wanted = std::getenv("OPAL_TEST_DEVICE");
+    return wanted ? wanted : "cpu";
+}
+
 } // namespace opal::test

@@ -1,4 +1,4 @@
-// A folder for a test's files, empty at first and gone with the object.
+// A folder for a test's files, and shell commands.
 #pragma once
 
 #include <filesystem>
@@ -6,6 +6,7 @@
 
 namespace opal::test {
 
+// Empty at first, removed with the object.
 class ScratchFolder {
 public:
     ScratchFolder();
@@ -28,7 +29,10 @@ struct Outcome {
     int exit_code = -1;
     std::string out, err;
 };
-// Runs a shell command and keeps what it says.
+// Runs a shell command and keeps what it prints.
 Outcome run_shell(const std::string &command);
+
+// The device that tests run on, as --device takes it: $OPAL_TEST_DEVICE, else "cpu".
+std::string wanted_device();
 
 } // namespace opal::test

@@ -1,0 +1,32 @@
+// Small scenes' parts, in memory: shapes, materials, a camera. `opal selftest`, `opal extremes` and the tests build
+// their scenes of them.
+#pragma once
+
+#include "scene/scene.h"
+
+namespace opal::examples {
+
+// A camera at `from` that looks at `to`, with that full horizontal angle in degrees. It clips nothing and has a box
+// filter; the resolution is the default one.
+Camera camera(Vec3 from, Vec3 to, double fov);
+
+// Grey materials. Indices of refraction are those inside; outside is a vacuum.
+BsdfRecord diffuse(double albedo, bool use_cosine = true);
+BsdfRecord mirror();
+BsdfRecord dielectric(double int_ior = 1.5);
+BsdfRecord microfacet(double alpha, double kd = 0.3);        // index 1.5
+BsdfRecord phong(double exponent, double reflectance = 0.5); // kd = ks = reflectance; half of the samples are diffuse
+
+// Triangles without vertex normals, by their corners' indices.
+TriangleMesh mesh_of(std::vector<Vec3> positions, const std::vector<std::array<unsigned, 3>> &triangles);
+// The parallelogram o, o + u, o + u + v, o + v as two triangles; its front side is u x v.
+TriangleMesh quad(Vec3 o, Vec3 u, Vec3 v);
+// An axis-parallel cube of 12 triangles.
+TriangleMesh cube(Vec3 center, double half_side, bool inwards = false);
+
+using Shape = std::variant<TriangleMesh, Parallelogram>;
+Mesh made_of(Shape shape, const BsdfRecord &bsdf);
+// A grey area light that reflects nothing; radiance in W / (m^2 sr).
+Mesh light(Shape shape, double radiance);
+
+} // namespace opal::examples

@@ -1,0 +1,42 @@
+#include "read/nori/parsers.h"
+#include "selftest/checks.h"
+
+namespace opal {
+
+namespace {
+
+Material parse_material(const std::string &name, const std::string &xml) {
+    const XmlDocument document("a material of opal selftest", xml);
+    return {name, parse_bsdf(document.root(), {}).record};
+}
+
+} // namespace
+
+const std::vector<Material> &selftest_materials() {
+    static const std::vector<Material> materials = {
+        parse_material("diffuse", R"(<bsdf type="diffuse"><color name="albedo" value="0.9 0.5 0.1"/></bsdf>)"),
+        parse_material("diffuse, by cosine", R"(<bsdf type="diffuse"><color name="albedo" value="0.9 0.5 0.1"/>
+                                                  <boolean name="use_cosine" value="true"/></bsdf>)"),
+        parse_material("microfacet 0.1", R"(<bsdf type="microfacet"><float name="alpha" value="0.1"/>
+                                              <color name="kd" value="0.3 0.15 0.075"/></bsdf>)"),
+        parse_material("microfacet 0.5", R"(<bsdf type="microfacet"><float name="alpha" value="0.5"/>
+                                              <color name="kd" value="0 0 0"/></bsdf>)"),
+        parse_material("phong 20", R"(<bsdf type="phong"><color name="kd" value="0.5 0.4 0.3"/>
+                                        <color name="ks" value="0.5 0.4 0.9"/></bsdf>)"),
+        parse_material("phong 300",
+                       R"(<bsdf type="phong"><color name="kd" value="0.5 0.4 0.3"/>
+                            <color name="ks" value="0.5 0.4 0.9"/><float name="pd" value="0.1"/>
+                            <float name="n" value="300"/></bsdf>)"),
+        parse_material("dielectric", R"(<bsdf type="dielectric"/>)"),
+        parse_material("mirror", R"(<bsdf type="mirror"/>)")};
+    return materials;
+}
+
+FlatScene scene_of_materials(const std::vector<Material> &materials) {
+    std::vector<BsdfRecord> records;
+    for (const Material &material : materials)
+        records.push_back(material.record);
+    return scene_of_bsdfs(records);
+}
+
+} // namespace opal
