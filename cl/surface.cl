@@ -1,35 +1,46 @@
-// surface: what is known of the points where rays met triangles.
+// surface: the points where rays met triangles, and the triangles' vertices and normals.
+#include "core/lanes.cl"
+#include "core/math.cl"
+#include "scene.cl"
+#include "shared/types.h"
+
 typedef struct {
     v3 p;                // position
     real t, u, v;        // its distance along the ray, barycentric weights of corners 1 and 2
     v3 normal;           // geometric, unit, on the side of (p1-p0) x (p2-p0)
     Frame frame;         // around the shading normal
-    v3 wi;               // towards where the ray came from, local
-    uints triangle;      // its index
-    real margin;         // bound of the error of p along the normal, with that of the next intersection
-    uints bsdf, emitter; // indices; emitter = OPAL_NONE where it does not emit
+    v3 wi;               // towards the ray's origin, unit, in that frame
+    uints triangle;      // index
+    real ray_offset;     // how far above the surface rays start (ray_offset_of)
+    uints bsdf, emitter; // indices; emitter = OPAL_NONE where the surface does not emit
 } Surface;
+
+// The word of a slot within a row of a block (TriangleBlock, OPAL_WIDTH words a row), counted from the first block's
+// row.
+static uints word_of_slot(uints slot) {
+    return (slot / (uint)(OPAL_WIDTH)) * (uint)(sizeof(TriangleBlock) / 4) + slot % (uint)(OPAL_WIDTH);
+}
 
 // Corner `corner` of the triangles in `slot`.
 static v3 triangle_vertex(const Scene *scene, uints slot, uint corner) {
-    global const float *first = scene->blocks->vertex[corner][0];
-    uints word = (slot >> 3) * (uint)(sizeof(TriangleBlock) / 4) + (slot & 7u);
-    return v3_of(GATHER(real, first, word, ), GATHER(real, (first + 8), word, ), GATHER(real, (first + 16), word, ));
+    uints word = word_of_slot(slot);
+    return v3_of(GATHER_WORD(real, scene->blocks->vertex[corner][0], word),
+                 GATHER_WORD(real, scene->blocks->vertex[corner][1], word),
+                 GATHER_WORD(real, scene->blocks->vertex[corner][2], word));
 }
 
 // Index of the triangles in `slot`.
 static uints triangle_id(const Scene *scene, uints slot) {
-    global const uint *first = scene->blocks->id;
-    uints word = (slot >> 3) * (uint)(sizeof(TriangleBlock) / 4) + (slot & 7u);
-    return GATHER(uints, first, word, );
+    return GATHER_WORD(uints, scene->blocks->id, word_of_slot(slot));
 }
 
 static v3 vertex_normal(const Scene *scene, uints index) {
     uints word = index * 3u;
-    return v3_of(GATHER(real, scene->normals, word, ), GATHER(real, (scene->normals + 1), word, ), GATHER(real, (scene->normals + 2), word, ));
+    return v3_of(GATHER_WORD(real, scene->normals, word), GATHER_WORD(real, (scene->normals + 1), word),
+                 GATHER_WORD(real, (scene->normals + 2), word));
 }
 
-// The corner normals of triangles, as indices; `smooth`: where all three corners have one.
+// The corner normals of triangles, as indices; `smooth`: the lanes where all three corners have one.
 typedef struct { uints index[3]; mask smooth; } CornerNormals;
 
 static CornerNormals corner_normals(const Scene *scene, uints triangle) {
@@ -45,29 +56,37 @@ static CornerNormals corner_normals(const Scene *scene, uints triangle) {
     return c;
 }
 
-// The shading normal at barycentric weights u, v: interpolated where the corners have normals, else the geometric.
+// The shading normal at barycentric weights u, v: interpolated where all corners have normals, else the geometric one.
 static v3 shading_normal(const Scene *scene, CornerNormals corners, real u, real v, v3 geometric) {
     if (!OPAL_HAS_shading_normals || !ANY(corners.smooth)) return geometric;
+    v3 n0 = vertex_normal(scene, corners.index[0]);
     v3 n = v3_mad(vertex_normal(scene, corners.index[1]), u,
-                  v3_mad(vertex_normal(scene, corners.index[2]), v, v3_scale(vertex_normal(scene, corners.index[0]), 1 - u - v)));
+                  v3_mad(vertex_normal(scene, corners.index[2]), v, v3_scale(n0, 1 - u - v)));
     real length2 = v3_dot(n, n);
     return v3_pick(corners.smooth & (length2 > 0), v3_scale(n, rsqrt(length2)), geometric);
 }
 
-// A bound of how far, along the normal, a point computed on this triangle may lie from it, and how far above it a ray must
-// start to be seen on the right side by triangle.cl: both are some roundings of the largest coordinate involved.
-static real surface_margin(v3 p0, v3 p1, v3 p2) {
+// The distance above a triangle at which rays start: it bounds the error of a point on the triangle along the normal,
+// plus that of the next intersection, so that the triangle is met on the right side or not at all. In half ulps of the
+// largest coordinate, the point p0 + u e1 + v e2 has an error of 6 a coordinate (edges 2, products 2, sums 2), sqrt(3)
+// times that along the normal; the next intersection moves and shears the vertices with about the same: 12 sqrt(3),
+// rounded up. They are ulps of floats in double precision too, because the scene is made of floats: the two triangles
+// of a parallelogram are not quite in one plane, and in double half of a lamp would hide behind the other half.
+#define RAY_OFFSET_ROUNDINGS 24
+#define FLOAT_HALF_ULP R(5.9604645e-08)
+static real ray_offset_of(v3 p0, v3 p1, v3 p2) {
     real largest = real_max(v3_largest(v3_abs(p0)), real_max(v3_largest(v3_abs(p1)), v3_largest(v3_abs(p2))));
-    // Roundings of floats in either precision, for the scene's numbers are floats: the two triangles of a parallelogram do not lie in
-    // one plane but for them, and in double half of a lamp would hide behind the other half.
-    return 24 * R(5.9604645e-08) * largest;
+    return RAY_OFFSET_ROUNDINGS * FLOAT_HALF_ULP * largest;
 }
 
-// `found`: the lanes that hit something; the others get the values of slot 0. ray.d is unit but for rounding, which would add up in
-// glass and mirrors: one Newton step towards 1 / sqrt(d.d) takes it away from wi.
-static Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask found) {
-    uints slot = uints_pick(found, hit.slot, (uints)(0));
-    // Indices first: what they lead to is fetched while the rest is computed.
+// Barycentric weights that keep points away from the sides stay below a third, the weight of the centroid.
+#define LARGEST_INSET R(0.3333)
+
+// The surface that each active lane hit; the others get the values of slot 0. ray.d is unit but for rounding, which
+// would add up in glass and mirrors: one Newton step towards 1 / sqrt(d.d) removes it from wi.
+static Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask active) {
+    uints slot = uints_pick(active, hit.slot, (uints)(0));
+    // Indices come first: what they lead to is fetched while the rest is computed.
     uints triangle = triangle_id(scene, slot), mesh = GATHER(uints, scene->triangles, triangle, .mesh);
     CornerNormals corners = corner_normals(scene, triangle);
     v3 p0 = triangle_vertex(scene, slot, 0), p1 = triangle_vertex(scene, slot, 1), p2 = triangle_vertex(scene, slot, 2);
@@ -78,26 +97,31 @@ static Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask found) {
     Surface s;
     s.normal = v3_scale(n, inverse_length);
     s.triangle = triangle;
-    s.margin = surface_margin(p0, p1, p2);
+    s.ray_offset = ray_offset_of(p0, p1, p2);
     s.t = hit.t;
     s.u = hit.u;
     s.v = hit.v;
-    if (OPAL_HAS_listed) {
-        // Where the ray meets the plane; edge-on that may lie beyond the triangle's sides, or nowhere, and the nearest in it is taken.
-        mask listed = to_mask(hit.slot >= scene->settings->listed_slot);
+    if (OPAL_HAS_face_list) {
+        // A face-list hit is where the ray meets the plane. Edge-on that may be beyond the triangle's sides, or
+        // nowhere: the nearest point of the triangle is taken.
+        mask from_list = to_mask(hit.slot >= scene->settings->face_list_slot);
         v3 from = v3_sub(ray.o, p0);
         v3 w = v3_mad(ray.d, -v3_dot(s.normal, from) / v3_dot(s.normal, ray.d), from);
         real u = real_min(real_max(v3_dot(v3_cross(w, e2), s.normal) * inverse_length, (real)(0)), (real)(1));
         real v = real_min(real_max(v3_dot(v3_cross(e1, w), s.normal) * inverse_length, (real)(0)), 1 - u);
-        s.t = listed ? v3_dot(v3_mad(e1, u, v3_mad(e2, v, v3_scale(from, (real)(-1)))), ray.d) / v3_dot(ray.d, ray.d) : s.t;
-        s.u = listed ? u : s.u;
-        s.v = listed ? v : s.v;
+        v3 along = v3_mad(e1, u, v3_mad(e2, v, v3_scale(from, (real)(-1))));
+        s.t = from_list ? v3_dot(along, ray.d) / v3_dot(ray.d, ray.d) : s.t;
+        s.u = from_list ? u : s.u;
+        s.v = from_list ? v : s.v;
     }
-    // From the triangle, not along the ray: far closer to the plane. And two margins away from its sides, as far as it is wide: a ray that
-    // starts at an edge of a closed room could start outside of it. The longest side is at most sqrt(2 (e1^2 + e2^2)).
-    real least = real_min(s.margin * sqrt(8 * (v3_dot(e1, e1) + v3_dot(e2, e2))) * inverse_length, (real)(R(0.3333)));
-    real u = real_min(real_max(s.u, least), 1 - 2 * least);
-    real v = real_min(real_max(s.v, least), 1 - least - u);
+    // The position is computed on the triangle, which is far closer to its plane than o + t d. It is kept two ray
+    // offsets away from the sides where the triangle is wide enough, because a ray that starts on an edge of a closed
+    // room could start outside of it. As a barycentric weight this is 2 offset / height, the height |n| / longest side,
+    // and the longest side at most sqrt(2 (e1^2 + e2^2)).
+    real two_longest = sqrt(8 * (v3_dot(e1, e1) + v3_dot(e2, e2)));
+    real inset = real_min(s.ray_offset * two_longest * inverse_length, (real)(LARGEST_INSET));
+    real u = real_min(real_max(s.u, inset), 1 - 2 * inset);
+    real v = real_min(real_max(s.v, inset), 1 - inset - u);
     s.p = v3_mad(e1, u, v3_mad(e2, v, p0));
     s.frame = frame_of(shading_normal(scene, corners, s.u, s.v, s.normal));
     s.wi = to_local(s.frame, v3_scale(ray.d, R(-1.5) + R(0.5) * v3_dot(ray.d, ray.d)));
@@ -106,8 +130,8 @@ static Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask found) {
     return s;
 }
 
-// A ray from the surface in direction d, started far enough above it not to meet it again.
+// Where a ray starts that leaves the surface in direction d: the ray offset above p, on d's side.
 static v3 leave_surface(Surface s, v3 d) {
-    real side = copysign(s.margin, v3_dot(s.normal, d));
+    real side = copysign(s.ray_offset, v3_dot(s.normal, d));
     return v3_mad(s.normal, side, s.p);
 }

@@ -2,12 +2,21 @@
 //   <bsdf type="dielectric"> <float name="intIOR" value="1.5046"/> <float name="extIOR" value="1.000277"/> </bsdf>
 //   intIOR   index of refraction on the side the normal points away from (1.5046, BK7 glass)
 //   extIOR   index of refraction on the side the normal points to (1.000277, air)
-// Reflects with the Fresnel reflectance as probability (as nearly as it can be drawn), else refracts by Snell's law. Refraction scales radiance by
-// (1/eta)^2, eta = index over index, far side over near side (Veach 1997, section 5.2); eta is reported with the sample.
+// Reflects with the Fresnel reflectance as probability, rounded up to the random numbers' grid; else refracts by
+// Snell's law. Refraction scales radiance by (1/eta)^2, where eta is the index of the far side over that of the near
+// side (Veach 1997, section 5.2); eta is reported with the sample.
+#include "bsdfs/fresnel.cl"
+#include "bsdfs/interface.cl"
+#include "core/lanes.cl"
+#include "core/math.cl"
+#include "core/rng.cl"
+#include "scene.cl"
+
 typedef struct { real int_ior, ext_ior; } dielectric_bsdf;
 
 static dielectric_bsdf dielectric_at(const Scene *scene, uints id) {
-    dielectric_bsdf b = {GATHER(real, scene->bsdfs, id, .u.dielectric.int_ior), GATHER(real, scene->bsdfs, id, .u.dielectric.ext_ior)};
+    dielectric_bsdf b = {GATHER(real, scene->bsdfs, id, .u.dielectric.int_ior),
+                         GATHER(real, scene->bsdfs, id, .u.dielectric.ext_ior)};
     return b;
 }
 
@@ -23,7 +32,8 @@ static BsdfSample dielectric_sample(dielectric_bsdf b, v3 wi, v2 u, real lobe) {
     real fresnel = fresnel_dielectric(fabs(wi.z), sin2, boundary);
     Choice reflection = choose(fresnel, lobe);
     mask reflects = reflection.first;
-    v3 refracted = v3_of(-wi.x * boundary.inverse_eta, -wi.y * boundary.inverse_eta, outside ? -far_cosine : far_cosine);
+    v3 refracted = v3_of(-wi.x * boundary.inverse_eta, -wi.y * boundary.inverse_eta,
+                         outside ? -far_cosine : far_cosine);
     real weight = (reflects ? fresnel : (1 - fresnel) * square(boundary.inverse_eta)) / reflection.probability;
     return bsdf_sample_of(v3_pick(reflects, reflect_z(wi), refracted), v3_all(wi.z != 0 ? weight : (real)(0)),
                           (real)(0), reflects ? (real)(1) : boundary.eta, ALL_LANES);

@@ -4,28 +4,37 @@
 //   intIOR   index of refraction of the coat (1.5046)
 //   extIOR   index of refraction outside (1.000277)
 //   kd       diffuse reflectance (0.5); the coat gets ks = 1 - max(kd)
-// f = kd/pi + ks D(h) F(wi.h) G / (4 cos_i cos_o cos_h), with D the density of h over solid angle (hence the last cosine),
-// G Smith's rational approximation for Beckmann (Walter et al. 2007, section 5.2).
-typedef struct { real alpha, int_ior, ext_ior, ks, coat_chance; v3 kd; } microfacet_bsdf;
+// f = kd/pi + ks D(h) F(wi.h) G / (4 cos_i cos_o cos_h), with D the density of h over solid angle (hence the last
+// cosine), G Smith's rational approximation for Beckmann (Walter et al. 2007, section 5.2).
+#include "bsdfs/fresnel.cl"
+#include "bsdfs/interface.cl"
+#include "core/lanes.cl"
+#include "core/math.cl"
+#include "core/rng.cl"
+#include "core/warp.cl"
+#include "scene.cl"
+
+typedef struct { real alpha, int_ior, ext_ior, ks, coat_chance; v3 kd; } microfacet_bsdf; // coat_chance: ks as drawn
 
 static microfacet_bsdf microfacet_at(const Scene *scene, uints id) {
     real ks = GATHER(real, scene->bsdfs, id, .u.microfacet.ks);
-    microfacet_bsdf b = {GATHER(real, scene->bsdfs, id, .u.microfacet.alpha), GATHER(real, scene->bsdfs, id, .u.microfacet.int_ior),
+    microfacet_bsdf b = {GATHER(real, scene->bsdfs, id, .u.microfacet.alpha),
+                         GATHER(real, scene->bsdfs, id, .u.microfacet.int_ior),
                          GATHER(real, scene->bsdfs, id, .u.microfacet.ext_ior), ks, drawn_probability(ks),
                          GATHER_V3(scene->bsdfs, id, .u.microfacet.kd)};
     return b;
 }
 
-// Shadowing of one direction w by facets of normal h.
+// Smith's shadowing of direction w by facets of normal h, in Walter's rational approximation for Beckmann.
 static real microfacet_g1(v3 w, v3 h, real alpha) {
-    // b = cos / (alpha sin), multiplied out: nothing is shadowed at the pole, where sin is 0
+    // Walter's a = cos / (alpha sin) is multiplied out, as sin is 0 at the pole.
     real c = w.z, s = alpha * sqrt(sin2_theta(w));
     real rational = c * (R(3.535) * s + R(2.181) * c) / (s * s + c * (R(2.276) * s + R(2.577) * c));
     real g = c < R(1.6) * s ? rational : (real)(1);
     return v3_dot(w, h) * w.z > 0 ? g : (real)(0);
 }
 
-// What eval and sample share: the coat without D, ks F G / divisor.
+// The coat without D: ks F G / divisor.
 static real microfacet_coat(microfacet_bsdf b, v3 wi, v3 wo, v3 h, real divisor) {
     real cosine = v3_dot(wi, h);
     real sin2 = 1 - square(cosine);
@@ -41,7 +50,8 @@ static v3 microfacet_eval(microfacet_bsdf b, v3 wi, v3 wo) {
     return v3_pick(above, f, v3_all((real)(0)));
 }
 
-// c D / (4 h.wo) + (1 - c) cos_o / pi, c the probability of the coat: ks, as nearly as it can be drawn; before the loss of what is drawn below the surface.
+// c D / (4 h.wo) + (1 - c) cos_o / pi, where c = coat_chance. It integrates to less than 1, because the coat draws some
+// directions below the surface.
 static real microfacet_pdf(microfacet_bsdf b, v3 wi, v3 wo) {
     v3 h = v3_normalize(v3_add(wi, wo));
     real coat = square_to_beckmann_pdf(h, b.alpha) / (4 * fabs(v3_dot(h, wo)));
@@ -49,7 +59,7 @@ static real microfacet_pdf(microfacet_bsdf b, v3 wi, v3 wo) {
     return (wi.z > 0 & wo.z > 0) ? density : (real)(0);
 }
 
-// The weight keeps the h that was drawn: one recomputed from wo is off by an ulp of wo, which a small alpha magnifies.
+// The weight uses the h that was drawn. An h recomputed from wo is off by an ulp of wo, which a small alpha magnifies.
 static BsdfSample microfacet_sample(microfacet_bsdf b, v3 wi, v2 u, real lobe) {
     mask coated = lobe < b.coat_chance;
     v3 facet = square_to_beckmann(u, b.alpha);
@@ -61,5 +71,6 @@ static BsdfSample microfacet_sample(microfacet_bsdf b, v3 wi, v2 u, real lobe) {
     real density = b.coat_chance * d / (4 * fabs(v3_dot(h, wo))) + (1 - b.coat_chance) * base;
     v3 f_cos = v3_add(v3_scale(b.kd, base), v3_all(microfacet_coat(b, wi, wo, h, 4 * wi.z * h.z) * d));
     mask kept = wi.z > 0 & wo.z > 0 & density > 0;
-    return bsdf_sample_of(wo, v3_pick(kept, v3_scale(f_cos, 1 / density), v3_all((real)(0))), kept ? density : (real)(0), (real)(1), NO_LANES);
+    v3 weight = v3_pick(kept, v3_scale(f_cos, 1 / density), v3_all((real)(0)));
+    return bsdf_sample_of(wo, weight, kept ? density : (real)(0), (real)(1), NO_LANES);
 }

@@ -1,5 +1,10 @@
 // mirror: a perfect one-sided mirror, discrete, weight 1.
 //   <bsdf type="mirror"/>
+#include "bsdfs/interface.cl"
+#include "core/lanes.cl"
+#include "core/math.cl"
+#include "scene.cl"
+
 typedef struct { mask discrete; } mirror_bsdf;
 
 static mirror_bsdf mirror_at(const Scene *scene, uints id) {

@@ -1,10 +1,18 @@
 // phong: the modified Phong model, one-sided (Lafortune and Willems 1994).
-//   <bsdf type="phong"> <color name="kd" value="0.5"/> <color name="ks" value="0.5"/> <float name="pd" value="0.5"/> <float name="n" value="20"/> </bsdf>
+//   <bsdf type="phong"> <color name="kd" value="0.5"/> <color name="ks" value="0.5"/>
+//     <float name="pd" value="0.5"/> <float name="n" value="20"/> </bsdf>
 //   kd, ks   diffuse and specular reflectance (0.5, 0.5)
-//   pd       share of the diffuse part, and the probability to draw from it, as nearly as it can be drawn (0.5)
+//   pd       share of the diffuse part, and the probability to draw from it (0.5)
 //   n        exponent of the lobe (20)
 // f = kd pd / pi + ks (1 - pd) (n + 2)/(2 pi) cos^n a, with a between wo and the mirrored wi.
-typedef struct { v3 kd, ks; real pd, n, base_chance; } phong_bsdf;
+#include "bsdfs/interface.cl"
+#include "core/lanes.cl"
+#include "core/math.cl"
+#include "core/rng.cl"
+#include "core/warp.cl"
+#include "scene.cl"
+
+typedef struct { v3 kd, ks; real pd, n, base_chance; } phong_bsdf; // base_chance: pd as drawn
 
 static phong_bsdf phong_at(const Scene *scene, uints id) {
     real pd = GATHER(real, scene->bsdfs, id, .u.phong.pd);
@@ -13,7 +21,7 @@ static phong_bsdf phong_at(const Scene *scene, uints id) {
     return b;
 }
 
-// Density of the lobe alone at wo.
+// Density at wo of the lobe alone, solid angle measure.
 static real phong_lobe(phong_bsdf b, v3 wi, v3 wo) {
     return square_to_phong_lobe_pdf(to_local(frame_of(reflect_z(wi)), wo), b.n);
 }
@@ -25,7 +33,7 @@ static v3 phong_eval(phong_bsdf b, v3 wi, v3 wo) {
     return v3_pick(above, f, v3_all((real)(0)));
 }
 
-// The mixture that sample draws from, also below the surface, where the sample is kept with weight 0.
+// The density of phong_sample, which may draw wo below the surface; there the sample has weight 0.
 static real phong_pdf(phong_bsdf b, v3 wi, v3 wo) {
     real density = b.base_chance * square_to_cosine_hemisphere_pdf(wo) + (1 - b.base_chance) * phong_lobe(b, wi, wo);
     return wi.z > 0 ? density : (real)(0);
@@ -35,13 +43,15 @@ static BsdfSample phong_sample(phong_bsdf b, v3 wi, v2 u, real lobe) {
     mask diffuse = lobe < b.base_chance;
     Frame mirrored = frame_of(reflect_z(wi));
     v3 wo = v3_pick(diffuse, square_to_cosine_hemisphere(u), to_world(mirrored, square_to_phong_lobe(u, b.n)));
-    // f cos / pdf with the larger of the two densities divided out: either alone may overflow or vanish.
+    // f cos / pdf with the larger of both densities divided out, because either alone may overflow or vanish.
     real base = square_to_cosine_hemisphere_pdf(wo), peak = phong_lobe(b, wi, wo);
     real larger = real_max(base, peak);
     real of_base = base / larger, of_peak = peak / larger;
     real density = b.base_chance * of_base + (1 - b.base_chance) * of_peak;
-    v3 f_cos = v3_add(v3_scale(b.kd, b.pd * of_base), v3_scale(b.ks, (1 - b.pd) * (b.n + 2) / (b.n + 1) * of_peak * wo.z));
+    v3 specular = v3_scale(b.ks, (1 - b.pd) * (b.n + 2) / (b.n + 1) * of_peak * wo.z);
+    v3 f_cos = v3_add(v3_scale(b.kd, b.pd * of_base), specular);
     mask kept = wi.z > 0 & wo.z > 0 & density > 0;
     real pdf = wi.z > 0 ? b.base_chance * base + (1 - b.base_chance) * peak : (real)(0);
-    return bsdf_sample_of(wo, v3_pick(kept, v3_scale(f_cos, 1 / density), v3_all((real)(0))), pdf, (real)(1), NO_LANES);
+    v3 weight = v3_pick(kept, v3_scale(f_cos, 1 / density), v3_all((real)(0)));
+    return bsdf_sample_of(wo, weight, pdf, (real)(1), NO_LANES);
 }

@@ -27,20 +27,21 @@ typedef struct {
     float inverse_area;   // 1 / area
     float u[3], v[3];     // parallelogram: its edges
     float normal[3];      // parallelogram: u x v, unit; it emits on that side
-    uint first, count;    // mesh: its rows of the light triangle table, in the order of its triangles,
-    uint first_triangle;  // which are these and the next ones of the Triangle array
-    float probability;    // with which it is drawn (--emitter-choice), as alias table and random numbers have it
+    uint first, count;    // mesh: its rows of the light triangles, in the order of its triangles
+    uint first_triangle;  // mesh: index of the first of these triangles
+    float probability;    // of choosing it (--emitter-choice), as the alias table and the random numbers' grid have it
     float accept;         // alias table: keep this row if a uniform number is below, else take row `other`
     uint other;
 } EmitterRecord;
 OPAL_SIZE_CHECK(EmitterRecord, 96);
 
-// One triangle of a mesh light, with its row of the mesh's alias table (Vose 1991). `other` counts from the mesh's first.
+// One triangle of a mesh light, with its row of the mesh's alias table (Vose 1991). `other` counts from the mesh's
+// first.
 typedef struct {
-    uint slot;            // where its vertices are: TriangleBlock slot / 8, place slot % 8
+    uint slot;            // its place in the blocks: block slot / 8, place slot % 8
     float accept;
     uint other;
-    float area;           // 1 / density over area of points drawn on it, given the light: its area over its probability (--triangle-choice)
+    float inverse_pdf;    // 1 / pdf of a point on it, area measure, given the light: area / probability of choosing it
 } LightTriangle;
 OPAL_SIZE_CHECK(LightTriangle, 16);
 

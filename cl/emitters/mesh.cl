@@ -1,6 +1,12 @@
 // mesh: a triangle mesh that emits on the side of its shading normals. A triangle is chosen by area or uniformly
-// (--triangle-choice), then a point on it uniformly; the density is the joint one.
+// (--triangle-choice), then a point on it uniformly; the density is that of both choices.
 //   <mesh type="obj"> ... <emitter type="area"> <color name="radiance" value="40 40 40"/> </emitter> </mesh>
+#include "core/lanes.cl"
+#include "core/rng.cl"
+#include "emitters/interface.cl"
+#include "scene.cl"
+#include "surface.cl"
+
 static EmitterSample emitter_mesh_sample(const Scene *scene, uints id, v2 point, u2 triangle) {
     uints first = GATHER(uints, scene->emitters, id, .first), count = GATHER(uints, scene->emitters, id, .count), row;
     ALIAS_ENTRY(scene, light_triangles, first, count, triangle, row)
@@ -16,9 +22,9 @@ static EmitterSample emitter_mesh_sample(const Scene *scene, uints id, v2 point,
     EmitterSample s;
     s.p = v3_mad(e1, u, v3_mad(e2, v, p0));
     s.normal = v3_normalize(n);
-    s.facing = shading_normal(scene, corner_normals(scene, triangle_id(scene, slot)), u, v, s.normal);
-    s.area = GATHER(real, scene->light_triangles, row, .area);
-    s.margin = surface_margin(p0, p1, p2);
+    s.shading_normal = shading_normal(scene, corner_normals(scene, triangle_id(scene, slot)), u, v, s.normal);
+    s.inverse_pdf = GATHER(real, scene->light_triangles, row, .inverse_pdf);
+    s.ray_offset = ray_offset_of(p0, p1, p2);
     s.discrete = NO_LANES;
     return s;
 }

@@ -1,28 +1,38 @@
-// direct_lighting: an emitter that is seen shows its radiance and nothing else; other surfaces show one bounce of direct light.
+// direct_lighting: an emitter that is seen shows its radiance and nothing else; other surfaces show one bounce of
+// direct light.
 //   surface_sampling   by points on the lights (--lighting emitter), else by BSDF sampling (bsdf)
 //   mis_sampling       by one of both with probability 1/2 and the balance heuristic (--lighting mis --mis one-sample);
 //                      balance and power take one sample of each
-static mask direct_lighting_step(const Scene *scene, Path *path, Hit hit, mask live) {
-    mask found = live & to_mask(hit.slot != OPAL_NONE);
-    if (!ANY(found)) return found;
-    Surface s = surface_at(scene, path->ray, hit, found);
-    path->radiance = v3_add(path->radiance, v3_mul(path->throughput, emitted(scene, path, s, found)));
+#include "bsdfs/dispatch.cl"
+#include "core/lanes.cl"
+#include "core/rng.cl"
+#include "integrators/steps.cl"
+#include "scene.cl"
+#include "shared/types.h"
+#include "surface.cl"
 
-    // The first surface, if it is no light, gathers direct light.
-    mask lit = found & to_mask(path->depth == 1u) & to_mask(s.emitter == OPAL_NONE) & to_mask(path->depth < scene->settings->max_depth);
-    if (!ANY(lit)) return lit;
+static mask direct_lighting_step(const Scene *scene, Path *path, Hit hit, mask active) {
+    active = active & is_hit(hit);
+    if (!ANY(active)) return active;
+    Surface s = surface_at(scene, path->ray, hit, active);
+    path->radiance = v3_add(path->radiance, v3_mul(path->throughput, emitted(scene, path, s, active)));
+
+    // The first surface gathers direct light, unless it is a light.
+    active = active & to_mask(path->depth == 1u) & to_mask(s.emitter == OPAL_NONE) &
+             to_mask(path->depth < scene->settings->max_depth);
+    if (!ANY(active)) return active;
     mask discrete = bsdf_is_discrete(scene, s.bsdf);
-    mask by_bsdf = lit, by_light = lit & !discrete;
-    if (CHOSEN(scene, lighting, emitter)) by_bsdf = lit & discrete;
+    mask by_bsdf = active, by_light = active & !discrete;
+    if (CHOSEN(scene, lighting, emitter)) by_bsdf = active & discrete;
     if (CHOSEN(scene, lighting, mis) && CHOSEN(scene, mis, one_sample)) {
         Choice light = choose((real)(R(0.5)), path_draw(scene, path, DIM_LOBE).y);
-        by_bsdf = lit & (discrete | !light.first);
+        by_bsdf = active & (discrete | !light.first);
         by_light = by_light & light.first;
         path->throughput = v3_scale(path->throughput, discrete ? (real)(1) : 1 / light.probability);
     }
     if (CHOSEN(scene, lighting, bsdf)) by_light = NO_LANES;
     LightSample light = sample_light(scene, path, s, by_light);
-    mask found_on = scatter(scene, path, s, by_bsdf);
-    path->radiance = v3_add(path->radiance, unless_blocked(scene, light));
-    return found_on;
+    active = scatter(scene, path, s, by_bsdf);
+    path->radiance = v3_add(path->radiance, visible_light(scene, light));
+    return active;
 }

@@ -1,30 +1,32 @@
-// probe: the functions that rendering uses, one by one, on random numbers, points and rays of the host's choice, so that what
-// is tested is what renders (host/trust).
+// probe: the functions that rendering uses, one by one, on random numbers, points and rays of the host's choice: what
+// the tests ask is what renders.
 //
-// A work-item carries LANES samples, from index first + item * LANES on. Inputs and outputs are planes (planes.cl) of `stride`
-// floats, a multiple of 16.
-#include "lanes.cl"
-#include "math.cl"
-#include "rng.cl"
-#include "warp.cl"
-#include "fresnel.cl"
-#include "scene.cl"
-#include "triangle.cl"
-#include "bvh.cl"
-#include "surface.cl"
-#include "bsdf.cl"
-#include "emitter.cl"
-#include "planes.cl"
+// A work-item carries LANES samples, from index first + item * LANES on. Inputs and outputs are columns (columns.cl) of
+// `stride` floats, a multiple of 16. Drivers compile a kernel for each shape of launch, so that all launches have one:
+// work-items past the end return.
+#include "bsdfs/dispatch.cl"
+#include "bsdfs/interface.cl"
+#include "core/lanes.cl"
+#include "core/rng.cl"
+#include "core/warp.cl"
+#include "emitters/dispatch.cl"
+#include "emitters/interface.cl"
+#include "kernels/columns.cl"
 #include "kernels/probe_list.h"
+#include "scene.cl"
+#include "shared/types.h"
+#include "surface.cl"
+#include "trace/trace.cl"
 
-// Drivers compile a kernel for each launch's shape, so that all launches have one: work-items past the end return.
-#define BASE_OR_RETURN \
-    uint base = first + (uint)get_global_id(0) * LANES; \
-    if (base >= stride) return
+// Index of a work-item's first sample.
+static uint base_of_item(uint first) { return first + (uint)get_global_id(0) * LANES; }
 
-// The pairs of dimensions first_dimension ... of sample i * sample_step of pixel i * pixel_step, by the settings' sampler.
-kernel void numbers(SCENE_PARAMETERS, uint pixel_step, uint sample_step, uint first_dimension, global float *out, uint first, uint stride) {
-    BASE_OR_RETURN;
+// The numbers of dimensions first_dimension ... of sample i * sample_step of pixel i * pixel_step, by the settings'
+// sampler.
+kernel void numbers(SCENE_PARAMETERS, uint pixel_step, uint sample_step, uint first_dimension, global float *out,
+                    uint first, uint stride) {
+    uint base = base_of_item(first);
+    if (base >= stride) return;
     Scene scene = SCENE_OF_PARAMETERS;
     uints i = lane_indices(base);
     Sampler sampler = sampler_start(i * pixel_step, i * sample_step, settings->seed);
@@ -35,8 +37,10 @@ kernel void numbers(SCENE_PARAMETERS, uint pixel_step, uint sample_step, uint fi
     }
 }
 
-kernel void warp_sample(int which, float parameter, global const float *given, global float *out, uint first, uint stride) {
-    BASE_OR_RETURN;
+kernel void warp_sample(int which, float parameter, global const float *given, global float *out, uint first,
+                        uint stride) {
+    uint base = base_of_item(first);
+    if (base >= stride) return;
     v2 u = get_v2(given, 0, stride, base);
     v3 p = v3_all((real)(0));
 #define SAMPLE_PLANE(name, domain) \
@@ -45,28 +49,34 @@ kernel void warp_sample(int which, float parameter, global const float *given, g
         p = v3_of(q.x, q.y, (real)(0)); \
     }
 #define SAMPLE_DIRECTION(name, domain) if (which == WARP_##name) p = square_to_##name(u);
-#define SAMPLE_LOBE(name, domain, meaning, otherwise) if (which == WARP_##name) p = square_to_##name(u, (real)(parameter));
+#define SAMPLE_LOBE(name, domain, meaning, otherwise) \
+    if (which == WARP_##name) p = square_to_##name(u, (real)(parameter));
     OPAL_WARPS(SAMPLE_PLANE, SAMPLE_DIRECTION, SAMPLE_LOBE)
     put_v3(out, WARP_X, stride, base, p);
 }
 
-kernel void warp_pdf(int which, float parameter, global const float *points, global float *out, uint first, uint stride) {
-    BASE_OR_RETURN;
+kernel void warp_pdf(int which, float parameter, global const float *points, global float *out, uint first,
+                     uint stride) {
+    uint base = base_of_item(first);
+    if (base >= stride) return;
     v3 p = get_v3(points, WARP_X, stride, base);
     real pdf = 0;
 #define PDF_PLANE(name, domain) if (which == WARP_##name) pdf = square_to_##name##_pdf(v2_of(p.x, p.y));
 #define PDF_DIRECTION(name, domain) if (which == WARP_##name) pdf = square_to_##name##_pdf(p);
-#define PDF_LOBE(name, domain, meaning, otherwise) if (which == WARP_##name) pdf = square_to_##name##_pdf(p, (real)(parameter));
+#define PDF_LOBE(name, domain, meaning, otherwise) \
+    if (which == WARP_##name) pdf = square_to_##name##_pdf(p, (real)(parameter));
     OPAL_WARPS(PDF_PLANE, PDF_DIRECTION, PDF_LOBE)
     put(out, 0, stride, base, pdf);
 }
 
-kernel void bsdf_draw(SCENE_PARAMETERS, uint id, float wi_x, float wi_y, float wi_z, global const float *given, global float *out,
-                      uint first, uint stride) {
-    BASE_OR_RETURN;
+kernel void bsdf_draw(SCENE_PARAMETERS, uint id, float wi_x, float wi_y, float wi_z, global const float *given,
+                      global float *out, uint first, uint stride) {
+    uint base = base_of_item(first);
+    if (base >= stride) return;
     Scene scene = SCENE_OF_PARAMETERS;
     v3 wi = v3_of((real)(wi_x), (real)(wi_y), (real)(wi_z));
-    BsdfSample s = bsdf_sample(&scene, (uints)(id), wi, get_v2(given, 0, stride, base), get(given, 2, stride, base), ALL_LANES);
+    v2 u = get_v2(given, 0, stride, base);
+    BsdfSample s = bsdf_sample(&scene, (uints)(id), wi, u, get(given, 2, stride, base), ALL_LANES);
     put_v3(out, BSDF_WO_X, stride, base, s.wo);
     put_v3(out, BSDF_WEIGHT_R, stride, base, s.weight);
     put(out, BSDF_PDF, stride, base, s.pdf);
@@ -74,9 +84,10 @@ kernel void bsdf_draw(SCENE_PARAMETERS, uint id, float wi_x, float wi_y, float w
     put(out, BSDF_DISCRETE, stride, base, s.discrete ? (real)(1) : (real)(0));
 }
 
-kernel void bsdf_value(SCENE_PARAMETERS, uint id, float wi_x, float wi_y, float wi_z, global const float *points, global float *out,
-                       uint first, uint stride) {
-    BASE_OR_RETURN;
+kernel void bsdf_value(SCENE_PARAMETERS, uint id, float wi_x, float wi_y, float wi_z, global const float *points,
+                       global float *out, uint first, uint stride) {
+    uint base = base_of_item(first);
+    if (base >= stride) return;
     Scene scene = SCENE_OF_PARAMETERS;
     v3 wi = v3_of((real)(wi_x), (real)(wi_y), (real)(wi_z));
     real pdf;
@@ -85,42 +96,47 @@ kernel void bsdf_value(SCENE_PARAMETERS, uint id, float wi_x, float wi_y, float 
     put(out, EVAL_PDF, stride, base, pdf);
 }
 
-// Random words whose upper 24 bits give these numbers.
+// Random words whose upper 24 bits are these numbers (unit_real).
 static u2 bits_of(v2 u) {
     u2 bits = {to_uints(u.x * GRID) << 8, to_uints(u.y * GRID) << 8};
     return bits;
 }
 
-// A point on an emitter, chosen too, with the joint density over area.
+// A point on a chosen emitter, and the density of both choices, area measure.
 kernel void light_draw(SCENE_PARAMETERS, global const float *given, global float *out, uint first, uint stride) {
-    BASE_OR_RETURN;
+    uint base = base_of_item(first);
+    if (base >= stride) return;
     Scene scene = SCENE_OF_PARAMETERS;
     uints id = emitter_choose(&scene, bits_of(get_v2(given, 0, stride, base)));
-    EmitterSample s = emitter_sample(&scene, id, get_v2(given, 2, stride, base), bits_of(get_v2(given, 4, stride, base)), ALL_LANES);
+    v2 point = get_v2(given, 2, stride, base);
+    EmitterSample s = emitter_sample(&scene, id, point, bits_of(get_v2(given, 4, stride, base)), ALL_LANES);
     put_v3(out, LIGHT_X, stride, base, s.p);
-    put_v3(out, LIGHT_FACING_X, stride, base, s.facing);
-    put(out, LIGHT_DENSITY, stride, base, emitter_probability(&scene, id) / s.area);
+    put_v3(out, LIGHT_NORMAL_X, stride, base, s.shading_normal);
+    put(out, LIGHT_DENSITY, stride, base, emitter_probability(&scene, id) / s.inverse_pdf);
     put_uints(out, LIGHT_ID, stride, base, id);
 }
 
-// Closest and any hit of rays, and with which density over area light sampling finds the point that was hit.
+// Closest and any hit of rays, and the density, area measure, with which light sampling finds the point that is hit.
 kernel void trace(SCENE_PARAMETERS, global const float *rays, global float *out, uint first, uint stride) {
-    BASE_OR_RETURN;
+    uint base = base_of_item(first);
+    if (base >= stride) return;
     Scene scene = SCENE_OF_PARAMETERS;
-    Ray ray = {get_v3(rays, RAY_O_X, stride, base), get_v3(rays, RAY_D_X, stride, base), get(rays, RAY_TMIN, stride, base),
-               get(rays, RAY_TMAX, stride, base)};
+    Ray ray = {get_v3(rays, RAY_O_X, stride, base), get_v3(rays, RAY_D_X, stride, base),
+               get(rays, RAY_TMIN, stride, base), get(rays, RAY_TMAX, stride, base)};
     Hit hit = closest_hit(&scene, ray, ALL_LANES);
-    mask found = to_mask(hit.slot != OPAL_NONE);
-    Surface s = surface_at(&scene, ray, hit, found);
-    mask shining = found & to_mask(s.emitter != OPAL_NONE);
+    mask active = is_hit(hit);
+    Surface s = surface_at(&scene, ray, hit, active);
+    mask active_emitter = active & to_mask(s.emitter != OPAL_NONE);
     real density = 0;
-    if (EMITTER_KINDS > 0 && ANY(shining))
-        density = shining ? emitter_area_pdf(&scene, uints_pick(shining, s.emitter, (uints)(0)), s.triangle, shining) : density;
-    put(out, HIT_T, stride, base, found ? s.t : hit.t);
+    if (EMITTER_KINDS > 0 && ANY(active_emitter)) {
+        uints id = uints_pick(active_emitter, s.emitter, (uints)(0));
+        density = active_emitter ? emitter_area_pdf(&scene, id, s.triangle, active_emitter) : density;
+    }
+    put(out, HIT_T, stride, base, active ? s.t : hit.t);
     put(out, HIT_U, stride, base, s.u);
     put(out, HIT_V, stride, base, s.v);
     put_uints(out, HIT_SLOT, stride, base, hit.slot);
     put(out, HIT_ANY, stride, base, any_hit(&scene, ray, ALL_LANES) ? (real)(1) : (real)(0));
-    put_uints(out, HIT_EMITTER, stride, base, uints_pick(found, s.emitter, (uints)(OPAL_NONE)));
+    put_uints(out, HIT_EMITTER, stride, base, uints_pick(active, s.emitter, (uints)(OPAL_NONE)));
     put(out, HIT_LIGHT_DENSITY, stride, base, density);
 }

@@ -1,8 +1,8 @@
-// What cl/kernels/probe.cl can be asked for, written once for host and device.
+// The inputs and outputs of cl/kernels/probe.cl, written once for host and device.
 #ifndef OPAL_PROBE_LIST_H
 #define OPAL_PROBE_LIST_H
 
-// The warps of cl/warp.cl, each with the domain (host/stats/domain.h) it draws from:
+// The warps of cl/core/warp.cl, each with the domain (host/stats/domain.h) it draws from:
 //   PLANE(name, domain), DIRECTION(name, domain), LOBE(name, domain, parameter, default)
 #define OPAL_WARPS(PLANE, DIRECTION, LOBE) \
     PLANE(tent, biunit) \
@@ -17,14 +17,20 @@
 #define OPAL_LOBE_ENUM(name, domain, parameter, otherwise) WARP_##name,
 enum { OPAL_WARPS(OPAL_WARP_ENUM, OPAL_WARP_ENUM, OPAL_LOBE_ENUM) WARP_COUNT };
 
-// Values that a draw may use, in planes: the pairs of OPAL_PROBE_PAIRS dimensions.
+// The dimensions, a pair of numbers each, that the kernel `numbers` writes.
 #define OPAL_PROBE_PAIRS 3
 
-// The planes of each kernel's output.
+// The columns of each kernel's output.
 enum { WARP_X, WARP_Y, WARP_Z, WARP_PLANES };
-enum { BSDF_WO_X, BSDF_WO_Y, BSDF_WO_Z, BSDF_WEIGHT_R, BSDF_WEIGHT_G, BSDF_WEIGHT_B, BSDF_PDF, BSDF_ETA, BSDF_DISCRETE, BSDF_PLANES };
+enum {
+    BSDF_WO_X, BSDF_WO_Y, BSDF_WO_Z, BSDF_WEIGHT_R, BSDF_WEIGHT_G, BSDF_WEIGHT_B, BSDF_PDF, BSDF_ETA, BSDF_DISCRETE,
+    BSDF_PLANES
+};
 enum { EVAL_R, EVAL_G, EVAL_B, EVAL_PDF, EVAL_PLANES };
-enum { LIGHT_X, LIGHT_Y, LIGHT_Z, LIGHT_FACING_X, LIGHT_FACING_Y, LIGHT_FACING_Z, LIGHT_DENSITY, LIGHT_ID, LIGHT_PLANES };
+enum {
+    LIGHT_X, LIGHT_Y, LIGHT_Z, LIGHT_NORMAL_X, LIGHT_NORMAL_Y, LIGHT_NORMAL_Z, LIGHT_DENSITY, LIGHT_ID,
+    LIGHT_PLANES
+};
 enum { RAY_O_X, RAY_O_Y, RAY_O_Z, RAY_D_X, RAY_D_Y, RAY_D_Z, RAY_TMIN, RAY_TMAX, RAY_PLANES };
 enum { HIT_T, HIT_U, HIT_V, HIT_SLOT, HIT_ANY, HIT_EMITTER, HIT_LIGHT_DENSITY, HIT_PLANES };
 

@@ -1,9 +1,9 @@
-// selftest: what a device says of the records it shares with the host, and its math functions' values.
-#include "lanes.cl"
-#include "math.cl"
-#include "shared/features.h"
+// selftest: the layout of the records that the device shares with the host, and values of the math functions.
+#include "core/lanes.cl"
+#include "core/math.cl"
 #include "kernels/selftest_list.h"
 
+// The sizes of OPAL_RECORDS, then the offsets of OPAL_MEMBERS.
 kernel void layout(global uint *out) {
     uint i = 0;
 #define SIZE_OF(T) out[i++] = (uint)sizeof(T);
@@ -16,7 +16,8 @@ kernel void layout(global uint *out) {
     OPAL_MEMBERS(OFFSET_OF)
 }
 
-// Of each of MATH_COUNT functions the values at its `count` numbers, a multiple of LANES; one plane after the other.
+// The values of each of OPAL_MATH's functions at `count` numbers of its own, a multiple of LANES, one column after the
+// other.
 kernel void math_values(global const float *xs, uint count, global float *out) {
     uint base = (uint)get_global_id(0) * LANES;
     if (base >= count) return;

@@ -1,4 +1,4 @@
-// What cl/kernels/selftest.cl computes, written once for host and device.
+// The records and functions that cl/kernels/selftest.cl checks, written once for host and device.
 #ifndef OPAL_SELFTEST_LIST_H
 #define OPAL_SELFTEST_LIST_H
 
@@ -8,19 +8,21 @@
 
 // Records whose sizes, and members whose offsets, must be the same on both sides.
 #define OPAL_RECORDS(RECORD) \
-    RECORD(BvhNode) RECORD(TriangleBlock) RECORD(Triangle) RECORD(ListedFace) RECORD(FaceRange) RECORD(MeshRecord) RECORD(Settings) \
-    RECORD(BsdfRecord) RECORD(EmitterRecord) RECORD(LightTriangle)
+    RECORD(BvhNode) RECORD(TriangleBlock) RECORD(Triangle) RECORD(FaceRecord) RECORD(FaceRange) RECORD(MeshRecord) \
+    RECORD(Settings) RECORD(BsdfRecord) RECORD(EmitterRecord) RECORD(LightTriangle)
 #define OPAL_MEMBERS(MEMBER) \
-    MEMBER(BvhNode, hi) MEMBER(BvhNode, child) MEMBER(TriangleBlock, id) MEMBER(Triangle, mesh) MEMBER(ListedFace, corner) \
-    MEMBER(MeshRecord, emitter) MEMBER(Settings, camera_forward) MEMBER(Settings, far_clip) MEMBER(Settings, listed_slot) \
-    MEMBER(Settings, rr_prob) MEMBER(Settings, light_energy) MEMBER(Settings, filter_c) MEMBER(Settings, choices) \
-    MEMBER(BsdfRecord, u.diffuse.use_cosine) MEMBER(BsdfRecord, u.dielectric.ext_ior) MEMBER(BsdfRecord, u.microfacet.kd) \
-    MEMBER(BsdfRecord, u.phong.n) MEMBER(EmitterRecord, area) MEMBER(EmitterRecord, v) MEMBER(EmitterRecord, probability) \
-    MEMBER(EmitterRecord, other) MEMBER(LightTriangle, area)
+    MEMBER(BvhNode, hi) MEMBER(BvhNode, child) MEMBER(TriangleBlock, id) MEMBER(Triangle, mesh) \
+    MEMBER(FaceRecord, corner) MEMBER(MeshRecord, emitter) MEMBER(Settings, camera_forward) \
+    MEMBER(Settings, far_clip) MEMBER(Settings, face_list_slot) MEMBER(Settings, rr_prob) \
+    MEMBER(Settings, light_energy) MEMBER(Settings, filter_c) MEMBER(Settings, choices) \
+    MEMBER(BsdfRecord, u.diffuse.use_cosine) MEMBER(BsdfRecord, u.dielectric.ext_ior) \
+    MEMBER(BsdfRecord, u.microfacet.kd) MEMBER(BsdfRecord, u.phong.n) MEMBER(EmitterRecord, area) \
+    MEMBER(EmitterRecord, v) MEMBER(EmitterRecord, probability) MEMBER(EmitterRecord, other) \
+    MEMBER(LightTriangle, inverse_pdf)
 
 // Functions that rendering uses: MATH(name, on the device, on the host in double, lowest x, highest x, scale, limit).
-// The error is counted in ulp of the larger of |result| and scale; limit: what OpenCL C 1.2, table 7.4, allows in ulp, and
-// for our own functions what they promise. Where the lowest x is positive, x is spread over its exponents.
+// The error is counted in ulp of the larger of |result| and scale; limit: what OpenCL C 1.2, table 7.4, allows in ulp,
+// and for our own functions what they promise. Where the lowest x is positive, x is spread over its exponents.
 #define OPAL_MATH(MATH) \
     MATH(reciprocal, 1 / x, 1 / x, 1e-30, 1e30, 0, 2.5) \
     MATH(sqrt, sqrt(x), sqrt(x), 1e-30, 1e30, 0, 3) \

@@ -1,4 +1,4 @@
-// What lets one header be read by OpenCL C 1.2 and by C++20.
+// Glue by which a header can be read by OpenCL C 1.2 and by C++20.
 //
 // A shared struct holds only float, int, uint, arrays and structs of these: no float3, bool, size_t, pointers or enums,
 // whose size or alignment differ between compilers. OPAL_SIZE_CHECK after a struct holds its size on both sides.

@@ -1,7 +1,7 @@
 // The strategy axes and their choices, each name written once: command-line flag, JSON key, kernel constant.
 //
-// A row's name is spelled with '_' here and with '-' on the command line. The device asks CHOSEN(scene, lighting, mis);
-// where the kernel is specialised this is a constant, in the general kernel it is read from Settings.
+// A row's name is spelled with '_' here and with '-' on the command line. The device asks CHOSEN(scene, lighting, mis),
+// which is a constant where the kernel is specialised; the general kernel reads it from Settings.
 #ifndef OPAL_STRATEGY_H
 #define OPAL_STRATEGY_H
 

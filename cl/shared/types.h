@@ -11,44 +11,46 @@ namespace opal {
 
 #define OPAL_NONE 0xffffffffu        // no emitter, no normal, no hit, no depth limit
 #define OPAL_LEAF 0x80000000u        // a child that is a triangle block
-#define OPAL_LEVELS 24               // nodes one below the other, root and all, that a tree never exceeds
-#define OPAL_LISTED_TRIANGLES 48     // at most so many triangles are listed outside the tree, where lanes are many ...
-#define OPAL_LISTED_VERTICES 96      // ... with at most so many distinct vertices
+#define OPAL_LEVELS 24               // most levels of a tree, its root included
+#define OPAL_WIDTH 8                 // children of a node, triangles of a block
+#define OPAL_FACE_LIST_TRIANGLES 48  // most triangles of the face list, which is tested beside the tree ...
+#define OPAL_FACE_LIST_VERTICES 96   // ... and its most distinct vertices
 
-// A node of the 8-wide tree: the boxes of its children, one axis and side a row, and what they are.
-// An unused child is OPAL_NONE and has lo = +inf, hi = -inf: a slab test misses it that picks near and far by the
-// direction's signs (one that sorts the two distances would hit). Unused ones come last. A child is a node's index, or
-// OPAL_LEAF | index of a block. The first node is the root.
+// A node of the 8-wide tree: its children's boxes, one axis and side a row, and the children themselves: the index of a
+// node, or OPAL_LEAF | index of a block. Unused children come last; they are OPAL_NONE and have lo = +inf, hi = -inf,
+// which a slab test misses as long as it picks near and far by the direction's signs (sorting the two distances would
+// hit). The first node is the root.
 typedef struct {
-    float lo[3][8];
-    float hi[3][8];
-    uint child[8];
+    float lo[3][OPAL_WIDTH];
+    float hi[3][OPAL_WIDTH];
+    uint child[OPAL_WIDTH];
 } BvhNode;
 OPAL_SIZE_CHECK(BvhNode, 224);
 
-// Eight triangles: vertex[corner][axis][place]. Unused places repeat one point, which no ray hits, and have id OPAL_NONE.
+// Eight triangles: vertex[corner][axis][place]. Unused places repeat one point, which no ray hits, and have id
+// OPAL_NONE.
 typedef struct {
-    float vertex[3][3][8];
-    uint id[8];           // index into the Triangle array
+    float vertex[3][3][OPAL_WIDTH];
+    uint id[OPAL_WIDTH];  // index into the Triangle array
 } TriangleBlock;
 OPAL_SIZE_CHECK(TriangleBlock, 320);
 
-// What shading needs of a triangle beside its vertices.
+// A triangle's attributes for shading, beside its vertices.
 typedef struct {
     uint normal[3];       // of each corner, an index into the normals (3 floats each); OPAL_NONE: use the geometric one
     uint mesh;
 } Triangle;
 OPAL_SIZE_CHECK(Triangle, 16);
 
-// A listed face, which is tested against all lanes at once: a triangle A B C, or a plane convex quadrilateral A B D C that stands for the
-// triangles A B C and D C B. Face i has the slots listed_slot + 2 i and, for D C B, the next one.
+// A face of the face list: a triangle A B C, or a plane convex quadrilateral A B D C that stands for the triangles A B
+// C and D C B. Face i has the slot face_list_slot + 2 i, and for D C B the next one.
 typedef struct {
-    uint corner[4];         // A, B, C, and D or B again: indices into the listed vertices
-    float normal[3], along; // unit, and how far along it the plane is: normal . p of its points p
-} ListedFace;
-OPAL_SIZE_CHECK(ListedFace, 32);
+    uint corner[4];         // A, B, C, and D (a triangle: B again): indices into the face list's vertices
+    float normal[3], along; // the plane normal . p = along, with a unit normal
+} FaceRecord;
+OPAL_SIZE_CHECK(FaceRecord, 32);
 
-// The first so many listed faces, and the vertices that they need.
+// The first faces of the face list: how many, and how many vertices they need.
 typedef struct {
     uint faces, vertices;
 } FaceRange;
@@ -64,7 +66,7 @@ OPAL_SIZE_CHECK(MeshRecord, 8);
 #define OPAL_FILTER_ENUM(name) FILTER_##name,
 enum { OPAL_FILTERS(OPAL_FILTER_ENUM) FILTER_COUNT };
 
-// Everything that is a number and not a table. Positions are in the flattened scene's units.
+// All numbers of a scene that are no table. Positions are in the flattened scene's units.
 typedef struct {
     float camera_origin[3];
     float camera_left[3], camera_up[3], camera_forward[3]; // world-space columns of toWorld, without translation
@@ -73,11 +75,11 @@ typedef struct {
     uint width, height;             // pixels
     uint spp;                       // samples of a pixel in the whole render (the strata of --sampler stratified)
     uint seed;
-    FaceRange listed;
-    FaceRange listed_to_light;      // those that may block light on the way from a light
-    uint listed_slot;               // of the first listed triangle: block * 8
+    FaceRange face_list;            // all of it
+    FaceRange face_list_to_light;   // the faces that may occlude a light
+    uint face_list_slot;            // of the face list's first triangle: block * 8
     uint emitter_count;
-    uint max_depth;                 // segments of the longest path: 1 shows emitters, 2 adds direct light; OPAL_NONE: no limit
+    uint max_depth;                 // most segments of a path (1: emitters, 2: direct light); OPAL_NONE: no limit
     uint rr_depth;                  // roulette starts when a path has this many segments
     float rr_prob;                  // --rr fixed: probability to survive, a multiple of 2^-24 as random numbers are
     uint normals_signed;            // integrator normals: n/2 + 1/2 (1) or |n| (0)

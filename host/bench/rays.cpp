@@ -3,6 +3,7 @@
 #include "bvh/box.h"
 #include "device/program.h"
 #include "device/scene_buffers.h"
+#include "shared/counters.h"
 
 #include <algorithm>
 #include <bit>
@@ -13,7 +14,6 @@ namespace opal {
 
 namespace {
 
-constexpr unsigned tests_kinds = 5; // as in cl/scene.cl: nodes, blocks, and what renders count
 constexpr size_t items_a_launch = 4096;
 
 size_t round_up(size_t n, size_t step) { return (n + step - 1) / step * step; }
@@ -163,7 +163,7 @@ RayTimes RayBench::time(const RaySet &set, int runs) {
             planes[plane * batch.stride + i] = set.rays[i][plane];
     batch.rays = make_table(device_, planes, "the rays");
     batch.hits = make_zeros<float>(device_, TRACE_HIT_PLANES * batch.stride, "the hits");
-    batch.tests = make_zeros<cl_uint>(device_, tests_kinds * batch.items, "the counts of tests");
+    batch.tests = make_zeros<cl_uint>(device_, COUNTERS * batch.items, "the counts of tests");
 
     trace(on_device_->program, batch);
     std::vector<double> rates, cpu_rates;
@@ -185,13 +185,14 @@ RayTimes RayBench::time(const RaySet &set, int runs) {
     }
 
     trace(counting_program(), batch);
-    double tests[tests_kinds] = {};
-    const std::vector<cl_uint> counted = read_buffer<cl_uint>(device_, batch.tests, tests_kinds * batch.items);
+    double tests[COUNTERS] = {};
+    const std::vector<cl_uint> counted = read_buffer<cl_uint>(device_, batch.tests, COUNTERS * batch.items);
     for (size_t i = 0; i < counted.size(); i++)
-        tests[i % tests_kinds] += counted[i] / double(count);
-    const bool tree = scene_.features["tree"];
-    times.node_tests = tests[0] + (tree ? 1 : 0); // the root is met by all
-    times.triangle_tests = 8 * tests[1] + (scene_.features["listed"] ? scene_.listed_triangles : 0);
+        tests[i % COUNTERS] += counted[i] / double(count);
+    const bool tree = scene_.features[FEATURE_tree];
+    times.node_tests = tests[COUNTER_nodes] + (tree ? 1 : 0); // the root is met by all
+    times.triangle_tests =
+        OPAL_WIDTH * tests[COUNTER_blocks] + (scene_.features[FEATURE_face_list] ? scene_.face_list_triangles : 0);
     return times;
 }
 

@@ -75,11 +75,9 @@ Race RenderBench::race(const FlatScene &scene, const BuildOptions &build) {
     return {rates_of(runs), spread_of(times), other.compile_seconds()};
 }
 
-FlatScene with_feature(const FlatScene &scene, std::string_view name) {
+FlatScene with_feature(const FlatScene &scene, unsigned feature) {
     FlatScene changed = scene;
-    for (Feature &feature : changed.features.list)
-        if (feature.name == name)
-            feature.on = true;
+    changed.features.list[feature].on = true;
     if (changed.nodes.empty())
         changed.nodes.push_back(empty_node()); // where there was no tree
     return changed;

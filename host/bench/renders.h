@@ -52,7 +52,7 @@ private:
     int rounds_;
 };
 
-// The scene for a kernel that has this feature, though the scene does not need it.
-FlatScene with_feature(const FlatScene &scene, std::string_view name);
+// The scene for a kernel that has this feature (FEATURE_*), though the scene does not need it.
+FlatScene with_feature(const FlatScene &scene, unsigned feature);
 
 } // namespace opal

@@ -29,7 +29,7 @@ double BenchSubject::bytes_a_triangle() const {
 
 std::string BenchSubject::scene_text() const {
     return fmt::format("scene   {}: {} triangles, {} of them listed beside the tree", scene.file.string(),
-                       flat.triangles.size(), flat.listed_triangles);
+                       flat.triangles.size(), flat.face_list_triangles);
 }
 
 std::string BenchSubject::device_text() const { return fmt::format("device  {}, {} lanes", text_of(device), lanes); }
@@ -47,7 +47,7 @@ nlohmann::json BenchSubject::json() const {
             {"lanes", lanes},
             {"math", name_of(scene.strategy.math)},
             {"triangles", flat.triangles.size()},
-            {"listed_triangles", flat.listed_triangles},
+            {"listed_triangles", flat.face_list_triangles},
             {"nodes", flat.nodes.size()},
             {"blocks", flat.blocks.size()},
             {"hierarchy_bytes", tree_bytes()},

@@ -173,7 +173,7 @@ int run_renders(const RenderBenchOptions &o) {
     const Device device = open_device(pick.info);
     const Sources sources = load_sources(o.scene.cl_dir);
     BuildOptions fresh = build;
-    fresh.note = fmt::format("{}", std::chrono::system_clock::now().time_since_epoch().count());
+    fresh.cache_salt = fmt::format("{}", std::chrono::system_clock::now().time_since_epoch().count());
     RenderBench bench(device, flat, build, sources, o.seconds, o.rounds);
     const double cold = bench.compile_seconds(fresh), warm = bench.compile_seconds(fresh);
 
@@ -190,7 +190,7 @@ int run_renders(const RenderBenchOptions &o) {
     };
     const auto share_of = [&](const char *stage) {
         BuildOptions twice = build;
-        twice.twice = stage;
+        twice.repeat_stage = stage;
         const RaceFigures row = race(fmt::format("{} twice", stage), flat, twice);
         report["twice"][stage] = row.json();
         return row.race.time.median - 1;

@@ -3,6 +3,7 @@
 #include "bench/renders.h"
 #include "commands/commands.h"
 #include "commands/options.h"
+#include "flatten/features.h"
 #include "flatten/precision_warnings.h"
 #include "scene/options.h"
 
@@ -101,23 +102,16 @@ void print_buffers(const FlatScene &flat) {
         all += bytes;
         print("  {:<18}{:>10} rows {:>12}\n", name, rows.size(), bytes_text(bytes));
     };
-    table("nodes", flat.nodes);
-    table("blocks", flat.blocks);
-    table("triangles", flat.triangles);
-    table("normals", flat.normals);
-    table("listed vertices", flat.listed_vertices);
-    table("listed faces", flat.listed_faces);
-    table("meshes", flat.meshes);
-    table("bsdfs", flat.bsdfs);
-    table("emitters", flat.emitters);
-    table("light triangles", flat.light_triangles);
+#define OPAL_PRINT_TABLE(record, name, shown) table(shown, flat.name);
+    OPAL_TABLES(OPAL_PRINT_TABLE)
+#undef OPAL_PRINT_TABLE
     print("  {:<18}{:>15} {:>12}\n", "in all", "", bytes_text(all));
 }
 
 void print_features(const Features &features) {
     print("\nfeatures of the kernel\n");
-    for (const Feature &feature : features.list)
-        print("  {:<22}{:<5}{}\n", feature.name, feature.on ? "in" : "out", feature.reason);
+    for (unsigned i = 0; i < FEATURE_COUNT; ++i)
+        print("  {:<22}{:<5}{}\n", feature_name(i), features[i] ? "in" : "out", features.list[i].reason);
     print("\naxes of the kernel\n");
     for (int axis = 0; axis < AXIS_COUNT; ++axis) {
         const int choice = features.axes[axis];
@@ -134,15 +128,16 @@ void print_savings(const InspectOptions &options, const SceneDescription &scene)
     RenderBench bench(open_device(pick.info), flat, build, sources, 0.5, 5);
     print("\nsaved by what is left out ({}, {} lanes; time with it over time without, 5 rounds)\n", pick.info.name,
           build.lanes);
-    for (const Feature &feature : flat.features.list) {
-        if (feature.on)
+    for (unsigned feature = 0; feature < FEATURE_COUNT; ++feature) {
+        if (flat.features[feature])
             continue;
-        if (flat.emitters.empty() && feature.name.starts_with("emitter_")) {
-            print("  {:<22}not to be measured: there is no emitter to sample\n", feature.name);
+        const std::string name = feature_name(feature);
+        if (flat.emitters.empty() && name.starts_with("emitter_")) {
+            print("  {:<22}not to be measured: there is no emitter to sample\n", name);
             continue;
         }
-        const Race race = bench.race(with_feature(flat, feature.name), build);
-        print("  {:<22}{:.3f} [{:.3f}, {:.3f}] times, and {:.3g} s to compile\n", feature.name, race.time.median,
+        const Race race = bench.race(with_feature(flat, feature), build);
+        print("  {:<22}{:.3f} [{:.3f}, {:.3f}] times, and {:.3g} s to compile\n", name, race.time.median,
               race.time.least, race.time.greatest, race.compile_seconds);
     }
 }

@@ -6,7 +6,7 @@
 
 namespace opal {
 
-// On the device, in the order of SCENE_PARAMETERS (cl/scene.cl); the settings come first.
+// On the device, in the order of SCENE_PARAMETERS (cl/scene.cl): the settings, then OPAL_TABLES.
 std::vector<cl::Buffer> upload_scene(const Device &device, const FlatScene &scene);
 
 } // namespace opal

@@ -67,9 +67,10 @@ public:
     std::string take() { return std::move(text_); }
 
 private:
-    // What is there already, and what only programs of one lane need.
+    // What is there already, and what is for programs of another width.
     bool left_out(const std::string &name) const {
-        return done_.count(name) != 0 || (lanes_ != 1 && name.starts_with("one_lane/"));
+        const char *other_width = lanes_ == 1 ? "many_lanes/" : "one_lane/";
+        return done_.count(name) != 0 || name.find(other_width) != std::string::npos;
     }
 
     void append_line(const std::string &name, const std::string &line, int number) {
@@ -121,11 +122,14 @@ std::string program_text(const Features &features, const BuildOptions &options, 
         "#define LANES {}\n#define OPAL_DOUBLE {}\n#define OPAL_FAST {}\n#define OPAL_COUNT_TESTS {}\n", options.lanes,
         int(options.math == MathMode::double_precision), int(options.math == MathMode::fast), int(options.count_tests));
     for (const char *stage : {"traversal", "sampling"})
-        text += fmt::format("#define OPAL_TWICE_{} {}\n", stage, int(options.twice == stage));
-    if (!options.note.empty())
-        text += fmt::format("typedef int opal_note_{};\n", options.note); // drivers see through comments and defines
-    for (const Feature &feature : features.list)
-        text += fmt::format("#define OPAL_HAS_{} {}\n", feature.name, int(feature.on));
+        text += fmt::format("#define OPAL_REPEAT_{} {}\n", stage, int(options.repeat_stage == stage));
+    if (!options.cache_salt.empty())
+        text +=
+            fmt::format("typedef int opal_note_{};\n", options.cache_salt); // drivers see through comments and defines
+#define OPAL_FEATURE_ROW(name, shown)                                                                                  \
+    text += fmt::format("#define OPAL_HAS_" #name " {}\n", int(features[FEATURE_##name]));
+    OPAL_FEATURES
+#undef OPAL_FEATURE_ROW
 #define OPAL_AXIS_DEFINE(axis, help)                                                                                   \
     text += fmt::format("#define OPAL_AXIS_" #axis " {}\n", features.axes[AXIS_##axis]);
     OPAL_AXES(OPAL_AXIS_DEFINE)

@@ -84,7 +84,7 @@ Face make_face(uint first, uint second, TriangleSoup &soup, std::vector<Triangle
 
 // Sets the plane of the quadrilateral A B D C: its normal is that of the diagonals, and it goes through the corners'
 // mean. `along` is the mean's distance along the normal as rounded to float, so that the plane goes through it exactly.
-void set_plane(const Point3f (&corners)[4], ListedFace &face) {
+void set_plane(const Point3f (&corners)[4], FaceRecord &face) {
     const Vec3 n = cross(vec3(corners[3]) - vec3(corners[0]), vec3(corners[2]) - vec3(corners[1])),
                unit = n * (1 / length(n));
     face.normal[0] = float(unit.x), face.normal[1] = float(unit.y), face.normal[2] = float(unit.z);
@@ -136,33 +136,33 @@ bool never_blocks(const Face &face, const TriangleSoup &soup, const std::vector<
 
 } // namespace
 
-std::vector<uint> choose_listed(const TriangleSoup &soup) {
+std::vector<uint> choose_face_list(const TriangleSoup &soup) {
     Box scene = Box::empty();
     for (const auto &corners : soup.corners)
         for (uint vertex : corners)
             scene.add(soup.vertices[vertex]);
-    const bool tiny = soup.corners.size() <= OPAL_LISTED_TRIANGLES;
+    const bool tiny = soup.corners.size() <= OPAL_FACE_LIST_TRIANGLES;
     std::vector<std::pair<float, uint>> candidates; // -area, id: the largest come first, equals in their order
     for (uint id = 0; id < soup.corners.size(); id++)
         if (const float area = box_of(soup, id).half_area(); tiny || area >= FIRST_SHARE * scene.half_area())
             candidates.push_back({-area, id});
     std::sort(candidates.begin(), candidates.end());
 
-    std::vector<uint> listed;
+    std::vector<uint> chosen;
     std::set<Point3f> distinct;
     for (const auto &[minus_area, id] : candidates) {
-        if (!tiny && listed.size() >= FIRST_LISTED && -minus_area < LISTED_SHARE * scene.half_area())
+        if (!tiny && chosen.size() >= FIRST_TRIANGLES && -minus_area < FACE_LIST_SHARE * scene.half_area())
             break;
         std::set<Point3f> extended = distinct;
         for (uint vertex : soup.corners[id])
             extended.insert(soup.vertices[vertex]);
-        if (listed.size() == OPAL_LISTED_TRIANGLES || extended.size() > OPAL_LISTED_VERTICES)
+        if (chosen.size() == OPAL_FACE_LIST_TRIANGLES || extended.size() > OPAL_FACE_LIST_VERTICES)
             break;
         distinct = std::move(extended);
-        listed.push_back(id);
+        chosen.push_back(id);
     }
-    std::sort(listed.begin(), listed.end());
-    return listed;
+    std::sort(chosen.begin(), chosen.end());
+    return chosen;
 }
 
 std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, std::vector<Triangle> &triangles) {
@@ -181,9 +181,9 @@ std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, std:
     return faces;
 }
 
-void build_tree(const TriangleSoup &soup, const std::vector<Face> &listed, FlatScene &scene) {
+void build_tree(const TriangleSoup &soup, const std::vector<Face> &faces, FlatScene &scene) {
     std::vector<char> in_list(soup.corners.size());
-    for (const Face &face : listed)
+    for (const Face &face : faces)
         for (uint id : {face.first, face.second})
             if (id != OPAL_NONE)
                 in_list[id] = 1;
@@ -191,24 +191,24 @@ void build_tree(const TriangleSoup &soup, const std::vector<Face> &listed, FlatS
     for (uint id = 0; id < soup.corners.size(); id++)
         if (!in_list[id])
             others.push_back(id);
-    Bvh bvh = listed.empty() ? build_bvh(soup) : build_bvh(subset_of(soup, others));
-    if (!listed.empty())
+    Bvh bvh = faces.empty() ? build_bvh(soup) : build_bvh(subset_of(soup, others));
+    if (!faces.empty())
         map_ids(bvh.blocks, others);
     scene.sah_cost = sah_cost(bvh);
     scene.nodes = std::move(bvh.nodes);
     scene.blocks = std::move(bvh.blocks);
 }
 
-void list_faces(const TriangleSoup &soup, std::vector<Face> listed, const std::vector<Point3f> &lights,
+void list_faces(const TriangleSoup &soup, std::vector<Face> faces, const std::vector<Point3f> &lights,
                 FlatScene &scene) {
-    const auto idle = std::stable_partition(listed.begin(), listed.end(),
+    const auto idle = std::stable_partition(faces.begin(), faces.end(),
                                             [&](const Face &face) { return !never_blocks(face, soup, lights); });
-    scene.settings.listed_slot = uint(scene.blocks.size()) * 8;
+    scene.settings.face_list_slot = uint(scene.blocks.size()) * 8;
     std::map<Point3f, uint> vertices;
     std::vector<uint> shapes, ids; // by slot: a triangle of its shape, and of its id
-    for (const Face &face : listed) {
+    for (const Face &face : faces) {
         const bool pair = face.second != OPAL_NONE;
-        ListedFace record{};
+        FaceRecord record{};
         Point3f corners[4]; // A, B, C, and D or B again
         for (size_t i = 0; i < 4; i++) {
             corners[i] = soup.vertices[i < 3  ? soup.corners[face.first][i]
@@ -217,22 +217,22 @@ void list_faces(const TriangleSoup &soup, std::vector<Face> listed, const std::v
             record.corner[i] = vertices.try_emplace(corners[i], uint(vertices.size())).first->second;
         }
         set_plane(corners, record);
-        scene.listed_faces.push_back(record);
-        scene.listed_triangles += pair ? 2 : 1;
+        scene.faces.push_back(record);
+        scene.face_list_triangles += pair ? 2 : 1;
         shapes.insert(shapes.end(), {face.first, pair ? face.second : face.first});
         ids.insert(ids.end(), {face.first, face.second});
-        scene.settings.listed = {uint(scene.listed_faces.size()), uint(vertices.size())};
-        if (scene.listed_faces.size() == size_t(idle - listed.begin()))
-            scene.settings.listed_to_light = scene.settings.listed;
+        scene.settings.face_list = {uint(scene.faces.size()), uint(vertices.size())};
+        if (scene.faces.size() == size_t(idle - faces.begin()))
+            scene.settings.face_list_to_light = scene.settings.face_list;
     }
-    if (!listed.empty()) {
+    if (!faces.empty()) {
         std::vector<TriangleBlock> blocks = pack_blocks(subset_of(soup, shapes));
         map_ids(blocks, ids);
         scene.blocks.insert(scene.blocks.end(), blocks.begin(), blocks.end());
     }
-    scene.listed_vertices.resize(3 * vertices.size());
+    scene.face_vertices.resize(3 * vertices.size());
     for (const auto &[position, place] : vertices)
-        std::copy(position.begin(), position.end(), &scene.listed_vertices[3 * place]);
+        std::copy(position.begin(), position.end(), &scene.face_vertices[3 * place]);
 }
 
 } // namespace opal

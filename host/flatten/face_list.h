@@ -8,12 +8,12 @@
 namespace opal {
 
 // Ids of the triangles to list: all of a scene that is small enough, else the largest, whose boxes have at least
-// LISTED_SHARE of the surface of the scene's box. Two faces are tested side by side in the time of one: the first
-// FIRST_LISTED triangles, as many as two quadrilaterals have, need FIRST_SHARE only. At most OPAL_LISTED_TRIANGLES,
-// with OPAL_LISTED_VERTICES distinct vertices.
-std::vector<uint> choose_listed(const TriangleSoup &soup);
-constexpr double LISTED_SHARE = 0.05, FIRST_SHARE = 0.01;
-constexpr std::size_t FIRST_LISTED = 4;
+// FACE_LIST_SHARE of the surface of the scene's box. Two faces are tested side by side in the time of one: the first
+// FIRST_TRIANGLES triangles, as many as two quadrilaterals have, need FIRST_SHARE only. At most
+// OPAL_FACE_LIST_TRIANGLES, with OPAL_FACE_LIST_VERTICES distinct vertices.
+std::vector<uint> choose_face_list(const TriangleSoup &soup);
+constexpr double FACE_LIST_SHARE = 0.05, FIRST_SHARE = 0.01;
+constexpr std::size_t FIRST_TRIANGLES = 4;
 
 // A triangle A B C and, where both make a convex quadrilateral A B D C, a second one D C B: their ids, OPAL_NONE for no
 // second one.
@@ -25,14 +25,14 @@ struct Face {
 // `triangles`, so that they begin at A and at D.
 std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, std::vector<Triangle> &triangles);
 
-// Builds the tree over the triangles that are in no face of `listed`: fills scene.nodes, scene.blocks and
+// Builds the tree over the triangles that are in no face of `faces`: fills scene.nodes, scene.blocks and
 // scene.sah_cost.
-void build_tree(const TriangleSoup &soup, const std::vector<Face> &listed, FlatScene &scene);
+void build_tree(const TriangleSoup &soup, const std::vector<Face> &faces, FlatScene &scene);
 
-// Appends the blocks of the listed faces to scene.blocks and fills their tables. Faces that no ray from a point of the
+// Appends the blocks of the face list to scene.blocks and fills their tables. Faces that no ray from a point of the
 // scene to a point of `lights` or of their convex hull can cross come last: the whole scene is on one side of their
 // plane, or all lights are in it.
-void list_faces(const TriangleSoup &soup, std::vector<Face> listed, const std::vector<Point3f> &lights,
+void list_faces(const TriangleSoup &soup, std::vector<Face> faces, const std::vector<Point3f> &lights,
                 FlatScene &scene);
 
 } // namespace opal

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace opal {
 namespace {
@@ -73,18 +72,18 @@ public:
                        scene.triangles.size(), "triangle", "triangles");
     }
 
-    Decision listed() const {
-        if (lanes < LISTED_LANES)
-            return {false, fmt::format("pays from {} lanes on", LISTED_LANES)};
-        if (scene.listed_faces.empty())
+    Decision face_list() const {
+        if (lanes < FACE_LIST_LANES)
+            return {false, fmt::format("pays from {} lanes on", FACE_LIST_LANES)};
+        if (scene.faces.empty())
             return {false, "no triangle is large enough to be tested outside the tree"};
-        return {true, fmt::format("{} of {}: tested against all lanes at once", scene.listed_triangles,
+        return {true, fmt::format("{} of {}: tested against all lanes at once", scene.face_list_triangles,
                                   plural(scene.triangles.size(), "triangle", "triangles"))};
     }
 
     Decision tree() const {
-        const std::size_t inside = scene.triangles.size() - scene.listed_triangles;
-        if (inside == 0 && lanes >= LISTED_LANES)
+        const std::size_t inside = scene.triangles.size() - scene.face_list_triangles;
+        if (inside == 0 && lanes >= FACE_LIST_LANES)
             return {false, scene.triangles.empty() ? "there are no triangles" : "all triangles are listed"};
         return {true, plural(inside, "triangle", "triangles")};
     }
@@ -142,19 +141,28 @@ int find_hemisphere(const SceneDescription &description, const FlatScene &scene,
 
 } // namespace
 
+const char *feature_name(unsigned feature) {
+    static const char *const names[] = {
+#define OPAL_FEATURE_ROW(name, shown) shown,
+        OPAL_FEATURES
+#undef OPAL_FEATURE_ROW
+    };
+    return names[feature];
+}
+
 Features find_features(const SceneDescription &description, const FlatScene &scene, int lanes) {
     const Decider decider(description, scene, lanes);
-    const std::pair<const char *, Decision> decisions[] = {
-#define OPAL_FEATURE_ROW(name) {#name, decider.name()},
+    const Decision decisions[] = {
+#define OPAL_FEATURE_ROW(name, shown) decider.name(),
         OPAL_FEATURES
 #undef OPAL_FEATURE_ROW
     };
 
     Features features;
     const bool specialise = description.strategy.specialise;
-    for (const auto &[name, decision] : decisions)
-        features.list.push_back(specialise ? Feature{name, decision.on, decision.reason}
-                                           : Feature{name, true, "--specialise off"});
+    for (unsigned i = 0; i < FEATURE_COUNT; i++)
+        features.list[i] =
+            specialise ? Feature{decisions[i].on, decisions[i].reason} : Feature{true, "--specialise off"};
     for (int axis = 0; axis < AXIS_COUNT; axis++) {
         features.axes[axis] = specialise ? description.strategy[axis] : -1;
         features.axis_reasons[axis] = specialise ? "chosen" : "--specialise off: decided at run time";
@@ -177,13 +185,6 @@ Features shared_features(const std::vector<FlatScene> &scenes) {
             }
     }
     return shared;
-}
-
-bool Features::operator[](std::string_view name) const {
-    for (const Feature &feature : list)
-        if (feature.name == name)
-            return feature.on;
-    throw std::logic_error("no feature is named " + std::string(name));
 }
 
 } // namespace opal

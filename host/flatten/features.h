@@ -5,7 +5,10 @@
 
 namespace opal {
 
-constexpr int LISTED_LANES = 4; // from this width on testing each of a few triangles beats a tree
+constexpr int FACE_LIST_LANES = 4; // from this width on testing each of a few triangles beats a tree
+
+// A feature's name (FEATURE_*), as `opal inspect` prints it.
+const char *feature_name(unsigned feature);
 
 // Finds the features of a flat scene that is otherwise complete. Without strategy.specialise all features are on and
 // all axes are -1, decided at run time.

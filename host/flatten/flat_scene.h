@@ -4,17 +4,18 @@
 #include "base/math.h"
 #include "bsdfs/list.h"
 #include "emitters/list.h"
+#include "kernels/features.h"
 #include "scene/scene.h"
-#include "shared/features.h"
+#include "scene_tables.h"
 #include "shared/types.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
 namespace opal {
 
 struct Feature {
-    std::string name; // "tree" -> OPAL_HAS_tree
     bool on = false;
     std::string reason; // "36 triangles: each against all lanes is faster"
 };
@@ -22,10 +23,10 @@ struct Feature {
 // The decisions that a kernel is compiled with: each feature as 0 or 1, each strategy axis as a CHOICE_* or as -1,
 // decided at run time.
 struct Features {
-    std::vector<Feature> list;          // in the order of OPAL_FEATURES
-    std::array<int, AXIS_COUNT> axes{}; // CHOICE_* or -1
+    std::array<Feature, FEATURE_COUNT> list; // by FEATURE_*
+    std::array<int, AXIS_COUNT> axes{};      // CHOICE_* or -1
     std::array<std::string, AXIS_COUNT> axis_reasons;
-    bool operator[](std::string_view name) const;
+    bool operator[](unsigned feature) const { return list[feature].on; }
 };
 
 struct FlatScene {
@@ -35,17 +36,10 @@ struct FlatScene {
     double scale = 1;
 
     Settings settings{};
-    std::vector<BvhNode> nodes; // empty: no tree
-    std::vector<TriangleBlock> blocks;
-    std::vector<Triangle> triangles;
-    std::vector<float> normals;           // 3 each
-    std::vector<float> listed_vertices;   // 3 each, distinct
-    std::vector<ListedFace> listed_faces; // beside the tree
-    uint listed_triangles = 0;            // that these faces stand for
-    std::vector<MeshRecord> meshes;
-    std::vector<BsdfRecord> bsdfs; // equal records are shared
-    std::vector<EmitterRecord> emitters;
-    std::vector<LightTriangle> light_triangles;
+#define OPAL_TABLE_ROWS(record, name, shown) std::vector<record> name;
+    OPAL_TABLES(OPAL_TABLE_ROWS)
+#undef OPAL_TABLE_ROWS
+    uint face_list_triangles = 0; // that `faces` stand for
     Features features;
 
     double sah_cost = 0;    // of the tree, in triangle block tests and node visits

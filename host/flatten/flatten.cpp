@@ -92,17 +92,17 @@ std::vector<Point3f> light_points(const SceneDescription &description, const Fla
     return points;
 }
 
-void build_acceleration(TriangleSoup &soup, const std::vector<Point3f> &lights, bool with_listed, FlatScene &scene) {
+void build_acceleration(TriangleSoup &soup, const std::vector<Point3f> &lights, bool with_face_list, FlatScene &scene) {
     const auto start = std::chrono::steady_clock::now();
-    const std::vector<uint> ids = choose_listed(soup);
+    const std::vector<uint> ids = choose_face_list(soup);
     // Triangles are paired at every width: pairing renumbers corners, and sampled points of lights depend on their
     // order.
-    std::vector<Face> listed = pair_up(ids, soup, scene.triangles);
-    if (!with_listed)
-        listed.clear();
-    if (listed.empty() || ids.size() < soup.corners.size())
-        build_tree(soup, listed, scene);
-    list_faces(soup, std::move(listed), lights, scene);
+    std::vector<Face> faces = pair_up(ids, soup, scene.triangles);
+    if (!with_face_list)
+        faces.clear();
+    if (faces.empty() || ids.size() < soup.corners.size())
+        build_tree(soup, faces, scene);
+    list_faces(soup, std::move(faces), lights, scene);
     scene.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -118,7 +118,7 @@ FlatScene flatten(const SceneDescription &description, int lanes) {
     gather_bsdfs(description, scene);
     TriangleSoup soup = gather_triangles(description, flattening, scene);
     build_acceleration(soup, light_points(description, flattening, soup, scene.triangles),
-                       lanes >= LISTED_LANES && description.strategy.specialise, scene);
+                       lanes >= FACE_LIST_LANES && description.strategy.specialise, scene);
     gather_emitters(description, flattening, soup, scene);
     scene.settings.emitter_count = uint(scene.emitters.size());
     scene.features = find_features(description, scene, lanes);

@@ -2,6 +2,7 @@
 
 #include "device/program.h"
 #include "device/scene_buffers.h"
+#include "shared/film.h"
 
 #include <algorithm>
 #include <chrono>
@@ -13,10 +14,10 @@ namespace opal {
 
 namespace {
 
-constexpr unsigned film_planes = 22, invalid_records = 8; // as in cl/film.cl
 // The buffer of a pass's samples. Kernels index its floats by 32 bits.
-constexpr unsigned long long sample_floats = 3, sample_bytes = 4 * sample_floats;
-constexpr unsigned long long max_sample_buffer_bytes = 256ull << 20, max_buffer_samples = (1ull << 32) / sample_floats;
+constexpr unsigned long long sample_bytes = 4 * OPAL_SAMPLE_FLOATS;
+constexpr unsigned long long max_sample_buffer_bytes = 256ull << 20,
+                             max_buffer_samples = (1ull << 32) / OPAL_SAMPLE_FLOATS;
 
 // A work-item renders one chunk of the samples of one tile. Tiles are cut into chunks for about so many work-items a
 // pass that all cores stay busy to its end.
@@ -62,23 +63,23 @@ Renderer::LaunchShape Renderer::launch_shape() const {
 
 Renderer::Renderer(const Device &device, const FlatScene &scene, const RenderOptions &options)
     : device_(device), settings_(scene.settings), options_(options),
-      pixels_(size_t(scene.settings.width) * scene.settings.height), wide_filter_(scene.features["wide_filter"]),
+      pixels_(size_t(scene.settings.width) * scene.settings.height), wide_filter_(scene.features[FEATURE_wide_filter]),
       on_device_(std::make_unique<OnDevice>()) {
     shape_ = launch_shape();
     const unsigned long long bytes =
         std::min({max_sample_buffer_bytes, device.info.max_allocation, sample_bytes * max_buffer_samples});
     buffer_spp_ =
         unsigned(std::clamp<unsigned long long>(bytes / sample_bytes / pixels_, 1, max_samples_a_chunk * max_chunks));
-    check_room(device, pixels_ * (sample_bytes * buffer_spp_ + 4ull * film_planes + 4), "the film and its samples");
+    check_room(device, pixels_ * (sample_bytes * buffer_spp_ + 4ull * FILM_PLANES + 4), "the film and its samples");
 
     const cl::Program program = build_program(device, program_text(scene.features, options.build, *options.sources),
                                               options.build, &compile_seconds_);
     on_device_->scene = upload_scene(device, scene);
     on_device_->samples =
         make_buffer(device, CL_MEM_READ_WRITE, pixels_ * sample_bytes * buffer_spp_, nullptr, "the samples of a pass");
-    on_device_->film = make_zeros<float>(device, pixels_ * film_planes, "the film");
+    on_device_->film = make_zeros<float>(device, pixels_ * FILM_PLANES, "the film");
     on_device_->counts = make_zeros<cl_uint>(device, pixels_, "the film's sample counts");
-    on_device_->invalid = make_zeros<cl_uint>(device, 1 + 2 * invalid_records, "the list of invalid samples");
+    on_device_->invalid = make_zeros<cl_uint>(device, 1 + 2 * OPAL_INVALID_RECORDS, "the list of invalid samples");
 
     with_device(device.info, [&] {
         on_device_->render = cl::Kernel(program, "render");
@@ -120,9 +121,9 @@ void Renderer::restart(unsigned seed, unsigned first_sample) {
     kernel_seconds_ = 0;
     with_device(device_.info, [&] {
         device_.handles->queue.enqueueWriteBuffer(on_device_->scene[0], CL_TRUE, 0, sizeof settings_, &settings_);
-        device_.handles->queue.enqueueFillBuffer(on_device_->film, cl_uint(0), 0, pixels_ * film_planes * 4);
+        device_.handles->queue.enqueueFillBuffer(on_device_->film, cl_uint(0), 0, pixels_ * FILM_PLANES * 4);
         device_.handles->queue.enqueueFillBuffer(on_device_->counts, cl_uint(0), 0, pixels_ * 4);
-        device_.handles->queue.enqueueFillBuffer(on_device_->invalid, cl_uint(0), 0, (1 + 2 * invalid_records) * 4);
+        device_.handles->queue.enqueueFillBuffer(on_device_->invalid, cl_uint(0), 0, (1 + 2 * OPAL_INVALID_RECORDS) * 4);
         return device_.handles->queue.finish();
     });
 }
@@ -203,24 +204,24 @@ Film Renderer::film() const {
     film.width = int(settings_.width);
     film.height = int(settings_.height);
     film.count = read_buffer<cl_uint>(device_, on_device_->counts, pixels_);
-    const std::vector<float> planes = read_buffer<float>(device_, on_device_->film, pixels_ * film_planes);
+    const std::vector<float> planes = read_buffer<float>(device_, on_device_->film, pixels_ * FILM_PLANES);
     const auto value = [&](unsigned plane, unsigned low, size_t pixel) { // hi + lo
-        return double(planes[plane * pixels_ + pixel]) + double(planes[(plane + low) * pixels_ + pixel]);
+        return double(planes[plane * pixels_ + pixel]) + double(planes[low * pixels_ + pixel]);
     };
     film.sum.resize(pixels_);
     film.squares.resize(pixels_);
     film.weighted.resize(wide_filter_ ? pixels_ : 0);
     for (size_t p = 0; p < pixels_; p++) {
         for (unsigned c = 0; c < 3; c++)
-            film.sum[p][c] = value(0 + c, 3, p);
+            film.sum[p][c] = value(FILM_SUM + c, FILM_SUM_LOW + c, p);
         for (unsigned c = 0; c < 4; c++)
-            film.squares[p][c] = value(6 + c, 4, p);
+            film.squares[p][c] = value(FILM_SQUARES + c, FILM_SQUARES_LOW + c, p);
         for (unsigned c = 0; wide_filter_ && c < 4; c++)
-            film.weighted[p][c] = value(14 + c, 4, p);
+            film.weighted[p][c] = value(FILM_WEIGHTED + c, FILM_WEIGHTED_LOW + c, p);
     }
-    const std::vector<cl_uint> invalid = read_buffer<cl_uint>(device_, on_device_->invalid, 1 + 2 * invalid_records);
+    const std::vector<cl_uint> invalid = read_buffer<cl_uint>(device_, on_device_->invalid, 1 + 2 * OPAL_INVALID_RECORDS);
     film.invalid = invalid[0];
-    for (unsigned i = 0; i < std::min(invalid[0], invalid_records); i++)
+    for (unsigned i = 0; i < std::min<unsigned>(invalid[0], OPAL_INVALID_RECORDS); i++)
         film.invalid_places.push_back(
             {invalid[1 + 2 * i] % settings_.width, invalid[1 + 2 * i] / settings_.width, invalid[2 + 2 * i]});
     return film;

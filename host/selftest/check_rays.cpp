@@ -25,10 +25,12 @@ Findings run_rays(const Device &device, const SelftestOptions &options) {
         scene.strategy.specialise = specialise;
         FlatScene flat = flatten(scene, options.build.lanes);
         if (specialise) { // one program for all scenes without a tree
-            const bool tree = flat.features["tree"];
+            const bool tree = flat.features[FEATURE_tree];
             flat.features = scene_of_bsdfs({}).features;
-            for (Feature &feature : flat.features.list)
-                feature.on = feature.name == "tree" ? tree : feature.on && !feature.name.starts_with("bsdf_");
+            flat.features.list[FEATURE_tree].on = tree;
+#define OPAL_WITHOUT_BSDF(name) flat.features.list[FEATURE_bsdf_##name].on = false;
+            OPAL_BSDFS(OPAL_WITHOUT_BSDF)
+#undef OPAL_WITHOUT_BSDF
         }
         return KernelProbe(device, flat, options.build, *options.sources);
     };
@@ -37,7 +39,7 @@ Findings run_rays(const Device &device, const SelftestOptions &options) {
     Findings findings = {check_hits("tree", soup, rays, seed + 1), check_edges("tree", sphere, seed + 2)};
     KernelProbe few = probe_of(triangle_soup(20, 0.4, seed + 3), true),
                 small = probe_of(scene_of_mesh(edges::closed_sphere(3)), true);
-    if (!few.scene().features["tree"]) {
+    if (!few.scene().features[FEATURE_tree]) {
         findings.push_back(check_hits("no tree", few, rays, seed + 4));
         findings.push_back(check_edges("no tree", small, seed + 5));
     }

@@ -39,7 +39,7 @@ TEST_CASE("gpu_check passes right kernels and not wrong ones", "[gpu_check][stat
                  "picture of mixed_room         right", "M paths/s", "Mrays/s", "all is right"});
 
     const std::string sampled = "v3_mul(path->throughput, light_in)";
-    const Mutant too_bright = {"sampled light 2 % too bright", "lighting.cl", sampled,
+    const Mutant too_bright = {"sampled light 2 % too bright", "integrators/steps.cl", sampled,
                                "v3_scale(" + sampled + ", (real)(1.02f))"};
     check_table(run_shell(as_gpu + gpu_check + " --opal " + opal_with(folder, write_kernels(folder, too_bright))), 1,
                 {"selftest --quick              WRONG", "floor and light, p, lanes 1, precise",

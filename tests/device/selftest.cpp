@@ -44,15 +44,15 @@ TEST_CASE("What computes wrong is found", "[selftest][stat]") {
         bool one_lane = false;
     };
     const WrongKernel kernels[] = {
-        {"basics", "math.cl", "R(8.3333333333333333e-03)", "R(8.3233333333333333e-03)", "error of sin_2pi"},
-        {"basics", "rng.cl", "0x53a22864u", "0x53a22865u", "Sobol"},
-        {"warps", "warp.cl", "sqrt(u.x * (2 - u.x))", "sqrt(u.x)", "warps: samples"},
+        {"basics", "core/math.cl", "R(8.3333333333333333e-03)", "R(8.3233333333333333e-03)", "error of sin_2pi"},
+        {"basics", "core/rng.cl", "0x53a22864u", "0x53a22865u", "Sobol"},
+        {"warps", "core/warp.cl", "sqrt(u.x * (2 - u.x))", "sqrt(u.x)", "warps: samples"},
         {"bsdfs", "bsdfs/microfacet.cl", "(4 * fabs(v3_dot(h, wo)));", "(4.1f * fabs(v3_dot(h, wo)));",
          "BSDFs: samples"},
         {"bsdfs", "bsdfs/dielectric.cl", "square(boundary.inverse_eta)", "boundary.inverse_eta", "mirror, dielectric"},
         {"lights", "emitters/mesh.cl", "folded ? 1 - point.x", "folded ? point.x", "lights: points"},
-        {"rays", "one_lane/walk.cl", "near_x = inverse.x < 0", "near_x = inverse.x > 0", "tree: hits", true},
-        {"images", "lighting.cl", "wo.z * per_density", "per_density", "furnace"},
+        {"rays", "trace/one_lane/walk.cl", "near_x = inverse.x < 0", "near_x = inverse.x > 0", "tree: hits", true},
+        {"images", "integrators/steps.cl", "wo.z * inverse_pdf", "inverse_pdf", "furnace"},
     };
     for (const WrongKernel &kernel : kernels) {
         INFO(kernel.file << ": " << kernel.to);
@@ -67,7 +67,7 @@ TEST_CASE("What computes wrong is found", "[selftest][stat]") {
 }
 
 TEST_CASE("The table marks what failed, and the exit code is 1", "[selftest]") {
-    const Outcome outcome = selftest_of({"Sobol", "rng.cl", "0x53a22864u", "0x53a22865u"}, "basics");
+    const Outcome outcome = selftest_of({"Sobol", "core/rng.cl", "0x53a22864u", "0x53a22865u"}, "basics");
     INFO(outcome.out << outcome.err);
     CHECK(outcome.exit_code == 1);
     const size_t line = outcome.out.find("Sobol numbers, wrong");
@@ -78,13 +78,13 @@ TEST_CASE("The table marks what failed, and the exit code is 1", "[selftest]") {
 }
 
 TEST_CASE("A crash, a hang and kernels that do not build are told", "[selftest]") {
-    const char *const output = "planes[plane * stride + base + lane] = (float)lanes[lane];";
-    const Outcome crash = selftest_of(
-        {"crash", "planes.cl", output, "*(volatile global float *)(8 + get_global_id(0)) = (float)lanes[lane];"},
-        "warps");
+    const char *const output = "columns[column * stride + base + lane] = (float)lanes[lane];";
+    const Outcome crash = selftest_of({"crash", "kernels/columns.cl", output,
+                                       "*(volatile global float *)(8 + get_global_id(0)) = (float)lanes[lane];"},
+                                      "warps");
     CHECK(crash.exit_code == 1);
     CHECK_THAT(crash.out, Catch::Contains("warps at 1 precise: crashed (Segmentation fault)"));
-    const Outcome broken = selftest_of({"broken", "planes.cl", output, "nothing;"}, "warps");
+    const Outcome broken = selftest_of({"broken", "kernels/columns.cl", output, "nothing;"}, "warps");
     CHECK(broken.exit_code == 1);
     CHECK_THAT(broken.out, Catch::Contains("the kernels do not build"));
     const ScratchFolder folder;

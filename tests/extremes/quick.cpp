@@ -66,14 +66,14 @@ TEST_CASE("What does not survive the extremes is seen by a row", "[quick]") {
         double value;
     };
     for (const Control &c : std::vector<Control>{
-             {{"an absolute epsilon", "surface.cl", "return 24 * R(5.9604645e-08) * largest;",
+             {{"an absolute epsilon", "surface.cl", "return RAY_OFFSET_ROUNDINGS * FLOAT_HALF_ULP * largest;",
                "return R(1e-3) + 0 * largest;"},
               "detail",
               1e-2},
-             {{"naive 1 - cos^2", "warp.cl", "-expm1(log(u.x) / (n + 1))", "1 - exp(log(u.x) / (n + 1))"},
+             {{"naive 1 - cos^2", "core/warp.cl", "-expm1(log(u.x) / (n + 1))", "1 - exp(log(u.x) / (n + 1))"},
               "numbers",
               0.5},
-             {{"a plain sum of the samples", "film.cl", "r.lo = lo - (r.hi - hi);", "r.lo = 0;"},
+             {{"a plain sum of the samples", "film/film.cl", "r.lo = lo - (r.hi - hi);", "r.lo = 0;"},
               "samples",
               1 << 20}}) {
         extremes::StressRow one = row(c.row);

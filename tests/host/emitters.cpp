@@ -31,7 +31,7 @@ TEST_CASE("a light of slivers down to the smallest triangle", "[emitters]") {
     REQUIRE(scene.light_triangles.size() == scene.triangles.size());
     double sum = 0, area = 0;
     for (const LightTriangle &row : scene.light_triangles) {
-        const double own = area_of(scene, row.slot), probability = own / row.area;
+        const double own = area_of(scene, row.slot), probability = own / row.inverse_pdf;
         CHECK(own > 0);
         // As the area says, but for a random number's 2^-24 in the table's rows, of which there are so many.
         CHECK(probability == Approx(own / scene.emitters[0].area).epsilon(1e-3).margin(0x1p-24));
@@ -72,7 +72,7 @@ TEST_CASE("emitters of each kind, in the flattened units", "[emitters]") {
         CHECK(area_of(scene, scene.light_triangles[0].slot) == Approx(8. / 64)); // each row leads to its own triangle
         CHECK(area_of(scene, scene.light_triangles[1].slot) == Approx(2. / 64));
         for (const LightTriangle &row : scene.light_triangles)
-            CHECK(row.area == Approx(10. / 64));
+            CHECK(row.inverse_pdf == Approx(10. / 64));
 
         CHECK((quad.kind == EMITTER_parallelogram && quad.u[0] == 0.25f && quad.v[1] == 0.375f &&
                quad.origin[2] == float((2 - center_z) / 8)));
@@ -101,7 +101,7 @@ TEST_CASE("emitters of each kind, in the flattened units", "[emitters]") {
         for (const EmitterRecord &emitter : scene.emitters)
             CHECK(emitter.probability == Approx(1. / 3).epsilon(1e-6));
         for (const LightTriangle &row : scene.light_triangles)
-            CHECK(area_of(scene, row.slot) / row.area == Approx(0.5));
+            CHECK(area_of(scene, row.slot) / row.inverse_pdf == Approx(0.5));
         CHECK(scene.emitters[0].area == Approx(10. / 64));
     }
 }

@@ -57,7 +57,7 @@ TEST_CASE("a scene of nothing", "[flatten]") {
         CHECK(scene.blocks.size() == 1);
         CHECK(scene.blocks[0].id[0] == OPAL_NONE);
         CHECK(scene.settings.emitter_count == 0);
-        CHECK(scene.features["tree"] == (lanes == 1));
+        CHECK(scene.features[FEATURE_tree] == (lanes == 1));
     }
 }
 
@@ -110,15 +110,15 @@ TEST_CASE("every number of the scene reaches the settings", "[flatten]") {
 // The triangles that listed face i stands for: in the slots that the device finds them in, with the corners that it
 // tests.
 std::vector<std::array<std::array<float, 3>, 3>> triangles_of_face(const FlatScene &scene, uint i) {
-    const ListedFace &face = scene.listed_faces[i];
+    const FaceRecord &face = scene.faces[i];
     const auto at = [&](int corner) {
-        const float *p = &scene.listed_vertices[3 * face.corner[corner]];
+        const float *p = &scene.face_vertices[3 * face.corner[corner]];
         return std::array<float, 3>{p[0], p[1], p[2]};
     };
     std::vector<std::array<std::array<float, 3>, 3>> expected{{at(0), at(1), at(2)}};
     if (face.corner[3] != face.corner[1])
         expected.push_back({at(3), at(2), at(1)});
-    const uint slot = scene.settings.listed_slot + 2 * i;
+    const uint slot = scene.settings.face_list_slot + 2 * i;
     for (uint which = 0; which < 2; which++) {
         const bool there = scene.blocks[(slot + which) / 8].id[(slot + which) % 8] != OPAL_NONE;
         CHECK(there == (which < expected.size()));
@@ -139,18 +139,18 @@ TEST_CASE("tiny scenes share corners and need no tree", "[flatten]") {
     }
     const FlatScene scene = flatten(scene_of(faces), 8);
     CHECK(scene.nodes.empty());
-    CHECK_FALSE(scene.features["tree"]);
-    CHECK(scene.listed_triangles == 12);
-    CHECK(scene.settings.listed.vertices == 8);
-    CHECK(scene.settings.listed.faces == 6);
-    CHECK(scene.settings.listed_to_light.faces == 0); // nothing is outside of a cube
-    REQUIRE(scene.listed_faces.size() == 6);
+    CHECK_FALSE(scene.features[FEATURE_tree]);
+    CHECK(scene.face_list_triangles == 12);
+    CHECK(scene.settings.face_list.vertices == 8);
+    CHECK(scene.settings.face_list.faces == 6);
+    CHECK(scene.settings.face_list_to_light.faces == 0); // nothing is outside of a cube
+    REQUIRE(scene.faces.size() == 6);
     for (uint i = 0; i < 6; i++)
         CHECK(triangles_of_face(scene, i).size() == 2);
 
     SECTION("but for few lanes, many triangles, many vertices, or a kernel that can do everything") {
-        CHECK(flatten(scene_of(faces), 1).features["tree"]);
-        CHECK(flatten(scene_of(faces), 1).listed_faces.empty());
+        CHECK(flatten(scene_of(faces), 1).features[FEATURE_tree]);
+        CHECK(flatten(scene_of(faces), 1).faces.empty());
         SceneDescription general = scene_of(faces);
         general.strategy.specialise = false;
         CHECK_FALSE(flatten(general, 8).nodes.empty());
@@ -159,12 +159,12 @@ TEST_CASE("tiny scenes share corners and need no tree", "[flatten]") {
             many.push_back(diffuse(Parallelogram{{0, 0, 0.1 * i}, {1, 0, 0}, {0, 1, 0}}));
         for (int i = 0; i < 33; i++)
             scattered.push_back(diffuse(mesh_of({{0, 0, 0.1 * i}, {1, 0, 0.1 * i}, {0, 1, 0.1 * i}}, {{0, 1, 2}})));
-        CHECK(flatten(scene_of(many), 8).features["tree"]);
-        CHECK(flatten(scene_of(scattered), 8).features["tree"]);
+        CHECK(flatten(scene_of(many), 8).features[FEATURE_tree]);
+        CHECK(flatten(scene_of(scattered), 8).features[FEATURE_tree]);
         many.pop_back();
         scattered.pop_back();
-        CHECK_FALSE(flatten(scene_of(many), 8).features["tree"]);
-        CHECK_FALSE(flatten(scene_of(scattered), 8).features["tree"]);
+        CHECK_FALSE(flatten(scene_of(many), 8).features[FEATURE_tree]);
+        CHECK_FALSE(flatten(scene_of(scattered), 8).features[FEATURE_tree]);
     }
 }
 
@@ -198,9 +198,9 @@ TEST_CASE("vertex normals are numbered across meshes; a triangle that lacks one 
         CHECK(scene.triangles[4].normal[corner] == OPAL_NONE);
     }
     CHECK((scene.triangles[1].mesh == 0 && scene.triangles[3].mesh == 1 && scene.triangles[4].mesh == 2));
-    CHECK(scene.features["shading_normals"]);
-    CHECK(reason(scene, "shading_normals") == "2 of 5 triangles");
-    CHECK_FALSE(flatten(scene_of({diffuse(one_triangle)}), 8).features["shading_normals"]);
+    CHECK(scene.features[FEATURE_shading_normals]);
+    CHECK(scene.features.list[FEATURE_shading_normals].reason == "2 of 5 triangles");
+    CHECK_FALSE(flatten(scene_of({diffuse(one_triangle)}), 8).features[FEATURE_shading_normals]);
 }
 
 TEST_CASE("triangles that float makes degenerate are dropped everywhere and counted", "[flatten]") {
@@ -250,7 +250,7 @@ TEST_CASE("the scenes that people have", "[flatten]") {
             const FlatScene scene = flatten(description, lanes);
             CHECK(scene.triangles.size() == triangles);
             CHECK(scene.emitters.size() == lights);
-            CHECK(scene.features["tree"] == (lanes == 1 || triangles > OPAL_LISTED_TRIANGLES));
+            CHECK(scene.features[FEATURE_tree] == (lanes == 1 || triangles > OPAL_FACE_LIST_TRIANGLES));
             if (triangles > 1000)
                 CHECK(scene.sah_cost < 6);
         }
@@ -270,15 +270,15 @@ TEST_CASE("the largest triangles are listed beside the tree, each triangle is in
     const SceneDescription description =
         scene_of({diffuse(grid), diffuse(Parallelogram{{-5, -5, 0}, {40, 0, 0}, {0, 40, 0}})});
     const FlatScene scene = flatten(description, 8);
-    CHECK(scene.features["listed"]);
-    CHECK(scene.features["tree"]);
-    REQUIRE(scene.listed_faces.size() == 1);
-    CHECK(scene.listed_triangles == 2);
-    CHECK(scene.settings.listed_to_light.faces == 0); // the grid is on one side of the floor
-    CHECK(scene.listed_vertices.size() == 3 * 4);
+    CHECK(scene.features[FEATURE_face_list]);
+    CHECK(scene.features[FEATURE_tree]);
+    REQUIRE(scene.faces.size() == 1);
+    CHECK(scene.face_list_triangles == 2);
+    CHECK(scene.settings.face_list_to_light.faces == 0); // the grid is on one side of the floor
+    CHECK(scene.face_vertices.size() == 3 * 4);
     REQUIRE(triangles_of_face(scene, 0).size() == 2);
     for (uint place = 0; place < 2; place++)
-        CHECK(scene.triangles[scene.blocks[scene.settings.listed_slot / 8].id[place]].mesh == 1);
+        CHECK(scene.triangles[scene.blocks[scene.settings.face_list_slot / 8].id[place]].mesh == 1);
     std::vector<int> seen(scene.triangles.size());
     for (const TriangleBlock &block : scene.blocks)
         for (uint id : block.id)
@@ -288,14 +288,14 @@ TEST_CASE("the largest triangles are listed beside the tree, each triangle is in
     // The tree's box is that of the grid.
     const auto &lows = scene.nodes[0].lo[2];
     CHECK(*std::min_element(std::begin(lows), std::end(lows)) == float((1 - scene.center.z) * scene.scale));
-    CHECK(flatten(description, 1).listed_faces.empty());
+    CHECK(flatten(description, 1).faces.empty());
 
     // A smaller one is listed beside a single large one, as two cost what one does; a third would cost more.
     const auto with_lamps = [&](std::vector<double> sides) {
         std::vector<Mesh> meshes{diffuse(grid), diffuse(Parallelogram{{-5, -5, 0}, {40, 0, 0}, {0, 40, 0}})};
         for (double side : sides)
             meshes.push_back(diffuse(Parallelogram{{side, side, 3}, {0, side, 0}, {side, 0, 0}}));
-        return flatten(scene_of(std::move(meshes)), 8).listed_triangles;
+        return flatten(scene_of(std::move(meshes)), 8).face_list_triangles;
     };
     CHECK(with_lamps({8}) == 4);
     CHECK(with_lamps({8, 7}) == 4);
@@ -304,7 +304,7 @@ TEST_CASE("the largest triangles are listed beside the tree, each triangle is in
     // Light below the floor makes it one that may block.
     SceneDescription lit = description;
     lit.point_lights.push_back({{0, 0, -1}, {1, 1, 1}, {}});
-    CHECK(flatten(lit, 8).settings.listed_to_light.faces == 1);
+    CHECK(flatten(lit, 8).settings.face_list_to_light.faces == 1);
 
     // A lamp in the middle of the scene does not block its own light, nor do two in one plane; one above the other may,
     // and so may a mirror there.
@@ -319,8 +319,8 @@ TEST_CASE("the largest triangles are listed beside the tree, each triangle is in
             add(10 * double(i), lamps[i], true);
         add(0, mirror, false);
         const FlatScene lit_scene = flatten(scene_of(std::move(meshes)), 8);
-        CHECK(lit_scene.listed_faces.size() == lamps.size() + 1);
-        return lit_scene.settings.listed_to_light.faces;
+        CHECK(lit_scene.faces.size() == lamps.size() + 1);
+        return lit_scene.settings.face_list_to_light.faces;
     };
     CHECK(blocking({1.3}, 9) == 0);
     CHECK(blocking({1.3, 1.3}, 9) == 0);
@@ -338,11 +338,11 @@ TEST_CASE("two triangles are one face only where they make a convex quadrilatera
                               diffuse(mesh_of({{-4, -4, -1}, {4, -4, -1}, {0, 4, -1}}, {{0, 1, 2}}))}),
                     8);
         size_t triangles = 0;
-        for (uint i = 0; i < scene.listed_faces.size(); i++)
+        for (uint i = 0; i < scene.faces.size(); i++)
             triangles += triangles_of_face(scene, i).size();
         CHECK(triangles == 3);
-        CHECK(scene.listed_triangles == 3);
-        return scene.listed_faces.size();
+        CHECK(scene.face_list_triangles == 3);
+        return scene.faces.size();
     };
     CHECK(faces({1, 1, 0}, {1, 3, 2}) == 2);
     CHECK(faces({1, 1, 0}, {3, 2, 1}) == 2);

@@ -1,8 +1,11 @@
-// Who may include whom: main includes commands and base, commands all rooms, and each room only rooms below it.
+// Who may include whom: main includes commands and base, commands all rooms, and each room only rooms below it. Device
+// files do likewise, and each includes the files whose names it uses.
 #include "support/scratch.h"
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <functional>
 #include <map>
 #include <regex>
 #include <set>
@@ -111,6 +114,128 @@ std::vector<std::string> problems_below(const std::string &top,
     return problems;
 }
 
+// The floors of cl/, from the ground up: folders, and files that are floors of their own.
+const std::vector<Room> floors = {
+    {"shared", {}},
+    {"bsdfs/list.h", {"shared"}},
+    {"emitters/list.h", {"shared"}},
+    {"scene_tables.h", {"shared", "bsdfs/list.h", "emitters/list.h"}},
+    {"core", {}},
+    {"scene.cl", {"shared", "scene_tables.h", "core"}},
+    {"trace", {"shared", "core", "scene.cl"}},
+    {"surface.cl", {"shared", "core", "scene.cl"}},
+    {"camera.cl", {"shared", "core", "scene.cl"}},
+    {"film", {"shared", "core", "scene.cl", "camera.cl"}},
+    {"bsdfs", {"bsdfs/list.h", "core", "scene.cl"}},
+    {"emitters", {"emitters/list.h", "core", "scene.cl", "surface.cl"}},
+    {"integrators", {"shared", "core", "scene.cl", "trace", "surface.cl", "bsdfs", "emitters"}},
+    {"kernels",
+     {"shared", "bsdfs/list.h", "emitters/list.h", "core", "scene.cl", "trace", "surface.cl", "camera.cl", "film",
+      "bsdfs", "emitters", "integrators"}},
+};
+
+using Files = std::map<std::string, std::string>; // "core/math.cl" -> text
+
+Files device_files() {
+    Files files;
+    const fs::path root = fs::path(OPAL_SOURCE_DIR) / "cl";
+    for (const auto &entry : fs::recursive_directory_iterator(root))
+        if (entry.path().extension() == ".cl" || entry.path().extension() == ".h")
+            files[fs::relative(entry.path(), root).generic_string()] = opal::test::read_text(entry.path());
+    return files;
+}
+
+const Room *floor_of(const std::string &path) {
+    const std::string folder = path.substr(0, path.find('/'));
+    const auto named = [](const std::string &name) {
+        const auto floor = std::find_if(floors.begin(), floors.end(), [&](const Room &f) { return f.name == name; });
+        return floor == floors.end() ? nullptr : &*floor;
+    };
+    return named(path) ? named(path) : named(folder);
+}
+
+// What is wrong with one include of the device file `path`; empty: nothing.
+std::string floor_problem(const std::string &path, const std::string &included) {
+    const Room *from = floor_of(path), *to = floor_of(included);
+    if (!from || !to)
+        return (from ? included : path) + " is not in the table of this test";
+    return from == to || from->may_include.count(to->name) ? "" : "may not include " + to->name;
+}
+
+// The files that a device file includes, and those that these include; itself only where it includes itself.
+std::set<std::string> all_includes(const Files &files, const std::string &path) {
+    std::set<std::string> seen;
+    std::vector<std::string> waiting = {path};
+    while (!waiting.empty()) {
+        const auto file = files.find(waiting.back());
+        waiting.pop_back();
+        if (file == files.end())
+            continue;
+        for (const Include &include : includes_of(file->second))
+            if (seen.insert(include.name).second)
+                waiting.push_back(include.name);
+    }
+    return seen;
+}
+
+// A device file's text without comments, strings, include directives and the names of members.
+std::string bare(const std::string &text) {
+    static const std::regex left_out(R"re(/\*[^]*?\*/|//[^\n]*|"[^"\n]*"|#\s*include[^\n]*|(\.|->)\s*[A-Za-z_]\w*)re");
+    return std::regex_replace(text, left_out, " ");
+}
+
+std::set<std::string> matches_of(const std::string &text, const std::string &pattern) {
+    const std::regex name(pattern);
+    std::set<std::string> names;
+    for (std::sregex_iterator match(text.begin(), text.end(), name), end; match != end; ++match)
+        names.insert((*match)[1]);
+    return names;
+}
+
+// The functions that a device file defines, and its other names: types, macros, members of enums.
+std::set<std::string> functions_of(const std::string &text) { return matches_of(text, R"(\nstatic [\w\s*]*?(\w+)\()"); }
+std::set<std::string> other_names_of(const std::string &text) {
+    std::set<std::string> names = matches_of(text, R"(\n\s*#\s*define (\w+))");
+    names.merge(matches_of(text, R"(\n(?:typedef struct [^\n]*)?\}\s*(\w+);)"));
+    names.merge(matches_of(text, R"(\ntypedef [^{;]*?(\w+);)"));
+    for (const std::string &members : matches_of(text, R"(enum \{([^}]*)\})"))
+        names.merge(matches_of("," + members + ",", R"(,\s*([A-Z]\w*)\s*(?:=[^,]*)?(?=,))"));
+    return names;
+}
+
+// The uses of names in .cl files that neither they nor the files that they include themselves define.
+std::vector<std::string> missing_includes(const Files &files) {
+    std::map<std::string, std::set<std::string>> functions, others; // name -> files that define it
+    Files bare_files;
+    for (const auto &[path, text] : files) {
+        const std::string &body = bare_files[path] = "\n" + bare(text);
+        for (const std::string &name : functions_of(body))
+            functions[name].insert(path);
+        for (const std::string &name : other_names_of(body))
+            others[name].insert(path);
+    }
+    std::vector<std::string> missing;
+    for (const auto &[path, body] : bare_files) {
+        if (!path.ends_with(".cl"))
+            continue;
+        std::set<std::string> known = {path};
+        for (const Include &include : includes_of(files.at(path)))
+            known.insert(include.name);
+        const auto judge = [&](const std::set<std::string> &used, const auto &definitions) {
+            for (const std::string &name : used) {
+                const auto defined = definitions.find(name);
+                if (defined != definitions.end() &&
+                    std::none_of(defined->second.begin(), defined->second.end(),
+                                 [&](const std::string &file) { return known.count(file) != 0; }))
+                    missing.push_back(path + " uses " + name + " of " + *defined->second.begin());
+            }
+        };
+        judge(matches_of(body, R"(\b([A-Za-z_]\w*)\()"), functions);
+        judge(matches_of(body, R"(\b([A-Za-z_]\w*)\b)"), others);
+    }
+    return missing;
+}
+
 } // namespace
 
 TEST_CASE("Every folder of host/ includes only what stands below it", "[includes]") {
@@ -126,13 +251,15 @@ TEST_CASE("Every folder of host/ includes only what stands below it", "[includes
     CHECK(problems == std::vector<std::string>{});
 }
 
-TEST_CASE("Headers below cl/ include headers below cl/, and no .cl", "[includes]") {
+TEST_CASE("Every device file includes only what stands below it, headers only headers", "[includes]") {
     const auto problems = problems_below("cl", [](const fs::path &file, const Include &include) -> std::string {
         if (!include.quoted)
             return "has no place in code that the device reads too";
         if (!fs::exists(fs::path(OPAL_SOURCE_DIR) / "cl" / include.name))
             return "is not written from the root of cl/";
-        return file.extension() == ".h" && include.name.ends_with(".cl") ? "a header never includes a .cl" : "";
+        if (file.extension() == ".h" && include.name.ends_with(".cl"))
+            return "a header never includes a .cl";
+        return file.extension() == ".md" ? "" : floor_problem(fs::relative(file, "cl").generic_string(), include.name);
     });
     CHECK(problems == std::vector<std::string>{});
 }
@@ -154,6 +281,24 @@ TEST_CASE("Headers that are dear to compile have one door", "[includes]") {
     CHECK(problems == std::vector<std::string>{});
 }
 
+TEST_CASE("The floors of cl/ make no circle, nor do its files", "[includes]") {
+    std::set<std::string> below;
+    for (const Room &floor : floors) {
+        for (const std::string &other : floor.may_include)
+            CHECK((below.count(other) || (floor.name + " includes " + other + ", which is not below it").empty()));
+        below.insert(floor.name);
+    }
+    const Files files = device_files();
+    for (const auto &[path, text] : files) {
+        INFO(path);
+        CHECK_FALSE(all_includes(files, path).count(path));
+    }
+}
+
+TEST_CASE("Every device file includes the files whose names it uses", "[includes]") {
+    CHECK(missing_includes(device_files()) == std::vector<std::string>{});
+}
+
 TEST_CASE("The rooms of host/ make no circle", "[includes]") {
     std::set<std::string> below = {"cl"};
     for (const Room &room : rooms) {
@@ -171,4 +316,23 @@ TEST_CASE("A wrong include would be found", "[includes]") {
     CHECK(problem_of(*find_room("base"), {"error.h", true, 1}) == "is not written from the root of host/ or cl/");
     CHECK(problem_of(*find_room("render"), {"device/context.h", true, 1}).empty());
     CHECK(includes_of(" # include \"a.h\" // why\n\n#include <b>\n").back().line == 3);
+    CHECK(floor_problem("core/math.cl", "scene.cl") == "may not include scene.cl");
+    CHECK(floor_problem("scene.cl", "trace/trace.cl") == "may not include trace");
+    CHECK(floor_problem("bsdfs/list.h", "bsdfs/interface.cl") == "may not include bsdfs");
+    CHECK(floor_problem("integrators/path.cl", "bsdfs/dispatch.cl").empty());
+    CHECK(floor_problem("colour.cl", "core/math.cl") == "colour.cl is not in the table of this test");
+    CHECK(all_includes({{"a.cl", "#include \"b.cl\"\n"}, {"b.cl", "#include \"a.cl\"\n"}}, "a.cl").count("a.cl"));
+}
+
+TEST_CASE("A name that no include brings would be found", "[includes]") {
+    const Files files = {
+        {"list.h", "enum { KIND_a, KIND_b = 2, KINDS };\ntypedef struct { int x; } Record;\n"},
+        {"math.cl", "#define PI 3\ntypedef struct {\n    int s;\n} Frame;\nstatic int half_of(int x) { return x; }\n"},
+        {"all.cl", "#include \"list.h\"\n#include \"math.cl\"\nRecord r; Frame f; int x = PI + half_of(KINDS);\n"},
+        {"none.cl", "int x = half_of(KIND_b); // PI\nRecord r;\nint half_of = f.PI;\n"},
+        {"nearly.cl", "#include \"all.cl\"\nint x = PI;\n"},
+    };
+    CHECK(missing_includes(files) ==
+          std::vector<std::string>{"nearly.cl uses PI of math.cl", "none.cl uses half_of of math.cl",
+                                   "none.cl uses KIND_b of list.h", "none.cl uses Record of list.h"});
 }

@@ -36,13 +36,27 @@ TEST_CASE("An include is expanded in place, once, between #line directives", "[s
                                        "three\n");
 }
 
-TEST_CASE("What only one lane needs leaves an empty line in programs of more", "[sources]") {
-    const Sources sources{{{"a.cl", "one\n#include \"one_lane/b.cl\"\ntwo\n"}, {"one_lane/b.cl", "b\n"}}};
+TEST_CASE("What is for another width leaves an empty line", "[sources]") {
+    const Sources sources{{{"a.cl", "one\n#include \"t/one_lane/b.cl\"\n#include \"t/many_lanes/c.cl\"\ntwo\n"},
+                           {"t/one_lane/b.cl", "b\n"},
+                           {"t/many_lanes/c.cl", "c\n"}}};
     CHECK(sources.expand("a.cl", 1) == "#line 1 \"cl/a.cl\"\none\n"
-                                       "#line 1 \"cl/one_lane/b.cl\"\nb\n"
-                                       "#line 3 \"cl/a.cl\"\ntwo\n");
+                                       "#line 1 \"cl/t/one_lane/b.cl\"\nb\n"
+                                       "#line 3 \"cl/a.cl\"\n\ntwo\n");
     for (int lanes : {4, 8, 16})
-        CHECK(sources.expand("a.cl", lanes) == "#line 1 \"cl/a.cl\"\none\n\ntwo\n");
+        CHECK(sources.expand("a.cl", lanes) == "#line 1 \"cl/a.cl\"\none\n\n"
+                                               "#line 1 \"cl/t/many_lanes/c.cl\"\nc\n"
+                                               "#line 4 \"cl/a.cl\"\ntwo\n");
+}
+
+TEST_CASE("A program holds the code of its own width alone", "[sources]") {
+    for (const char *file : {"kernels/render.cl", "kernels/probe.cl", "kernels/rays.cl"})
+        for (int lanes : {1, 4, 8, 16}) {
+            const std::string text = Sources::embedded().expand(file, lanes);
+            INFO(file << " at " << lanes << " lanes");
+            CHECK((text.find("one_lane/walk.cl\"\n//") != std::string::npos) == (lanes == 1));
+            CHECK((text.find("many_lanes/walk.cl\"\n//") != std::string::npos) == (lanes != 1));
+        }
 }
 
 TEST_CASE("A missing include names its place and what there is", "[sources]") {
@@ -62,7 +76,7 @@ TEST_CASE("A folder of sources holds what the binary embeds", "[sources]") {
 TEST_CASE("The program text defines width, precision, every feature and every axis, then the sources", "[sources]") {
     const Sources sources{{{"kernels/k.cl", "kernel void k() {}\n"}}};
     Features features;
-    features.list = {{"tree", true, ""}, {"wide_filter", false, ""}};
+    features.list[FEATURE_tree].on = true;
     features.axes.fill(-1);
     features.axes[AXIS_lighting] = CHOICE_lighting_mis;
     BuildOptions options;
@@ -72,9 +86,11 @@ TEST_CASE("The program text defines width, precision, every feature and every ax
     const std::string text = program_text(features, options, sources);
     CHECK_THAT(text, Catch::StartsWith(
                          "#define LANES 8\n#define OPAL_DOUBLE 0\n#define OPAL_FAST 1\n#define OPAL_COUNT_TESTS 0\n"
-                         "#define OPAL_TWICE_traversal 0\n#define OPAL_TWICE_sampling 0\n"
-                         "#define OPAL_HAS_tree 1\n#define OPAL_HAS_wide_filter 0\n"
-                         "#define OPAL_AXIS_integrator -1\n#define OPAL_AXIS_lighting 2\n"));
+                         "#define OPAL_REPEAT_traversal 0\n#define OPAL_REPEAT_sampling 0\n"
+                         "#define OPAL_HAS_bsdf_diffuse 0\n"));
+    CHECK_THAT(text, Catch::Contains("#define OPAL_HAS_face_list 0\n#define OPAL_HAS_tree 1\n"));
+    CHECK_THAT(text, Catch::Contains("#define OPAL_HAS_wide_filter 0\n"
+                                     "#define OPAL_AXIS_integrator -1\n#define OPAL_AXIS_lighting 2\n"));
     CHECK_THAT(text, Catch::Contains("#define OPAL_AXIS_sampler -1\n"));
     CHECK_THAT(text, Catch::Contains("\n#line 1 \"cl/kernels/k.cl\"\nkernel void k() {}\n"));
     CHECK(program_text(features, options, sources) == text);

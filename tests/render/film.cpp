@@ -19,8 +19,8 @@ namespace {
 
 // Kernels that make every sample of pixels 5, 16, 27, ... NaN, or infinite where `what` says so.
 Mutant spoiled(const std::string &what) {
-    return {"pixels " + what, "kernels/render.cl", "slot[0] = r[lane];",
-            "slot[0] = place[lane] % 11u == 5u ? " + what + " : r[lane];"};
+    return {"pixels " + what, "kernels/queue.cl", "sample[0] = r[lane];",
+            "sample[0] = place[lane] % 11u == 5u ? " + what + " : r[lane];"};
 }
 
 } // namespace
@@ -88,9 +88,8 @@ TEST_CASE("Invalid samples are counted, placed and left out of the mean", "[film
 }
 
 TEST_CASE("What a BSDF or a light makes of no number ends the path and is counted", "[film]") {
-    const Mutant weight{"weight", "bsdfs/diffuse.cl",
-                        "return bsdf_sample_of(wo, v3_scale(b.albedo, wi.z > 0 ? weight : (real)(0))",
-                        "return bsdf_sample_of(wo, v3_of((real)(NAN), b.albedo.y, b.albedo.z)"};
+    const Mutant weight{"weight", "bsdfs/diffuse.cl", "return bsdf_sample_of(wo, reflected,",
+                        "return bsdf_sample_of(wo, v3_of((real)(NAN), b.albedo.y, b.albedo.z),"};
     const Mutant light{"light", "bsdfs/diffuse.cl", "return v3_scale(b.albedo, above ? (real)(INV_PI) : (real)(0));",
                        "return v3_of((real)(NAN), b.albedo.y, b.albedo.z);"};
     for (const auto &[mutant, lighting] : {std::pair{weight, "bsdf"}, std::pair{light, "emitter"}})

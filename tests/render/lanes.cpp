@@ -95,7 +95,7 @@ TEST_CASE("The same picture at every width without a tree, and by the tree", "[l
     const Film one = at_lanes(scene, 1);
     for (int lanes : {4, 8, 16}) {
         const FlatScene flat = flatten(scene, lanes);
-        REQUIRE_FALSE(flat.features["tree"]);
+        REQUIRE_FALSE(flat.features[FEATURE_tree]);
         const Difference d = difference(one, at_lanes(scene, lanes));
         INFO(lanes << " lanes: " << d.pixels_off << " pixels off, means differ by " << d.means);
         CHECK(d.pixels_off <= 3);

@@ -12,17 +12,17 @@ using namespace opal::test;
 
 namespace {
 
-const std::string light_hit = "v3_mul(path->throughput, emitted(scene, path, s, found))";
+const std::string light_hit = "v3_mul(path->throughput, emitted(scene, path, s, active))";
 const std::string heuristic = "1 / (1 + (CHOSEN(scene, mis, power) ? ratio * ratio : ratio))";
 
 const std::vector<Mutant> planted = {
-    {"light samples", "lighting.cl", "emitter_radiance(scene, id)), wo.z * per_density",
-     "emitter_radiance(scene, id)), R(1.02) * wo.z * per_density"},
+    {"light samples", "integrators/steps.cl", "emitter_radiance(scene, id)), wo.z * inverse_pdf",
+     "emitter_radiance(scene, id)), R(1.02) * wo.z * inverse_pdf"},
     {"uniform directions", "bsdfs/diffuse.cl", "b.use_cosine ? (real)(1) : 2 * wo.z",
      "b.use_cosine ? (real)(1) : R(2.04) * wo.z"},
     {"cosine directions", "bsdfs/diffuse.cl", "b.use_cosine ? (real)(1) : 2 * wo.z",
      "b.use_cosine ? (real)(R(1.02)) : 2 * wo.z"},
-    {"the balance heuristic", "lighting.cl", heuristic,
+    {"the balance heuristic", "integrators/steps.cl", heuristic,
      "(CHOSEN(scene, mis, power) ? (real)(1) : (real)(R(1.02))) * " + heuristic},
     {"light hit without light samples", "integrators/path.cl", light_hit,
      "v3_scale(" + light_hit + ", CHOSEN(scene, lighting, bsdf) ? (real)(R(1.02)) : (real)(1))"},

@@ -34,7 +34,7 @@ Effort effort_at(int lanes, unsigned seed) {
 cl::Program program_from(const Sources &sources, const std::string &text, int lanes) {
     Sources with_text = sources;
     with_text.files["tests/inline.cl"] =
-        "#include \"lanes.cl\"\n#include \"math.cl\"\n#include \"fresnel.cl\"\n" + text;
+        "#include \"core/lanes.cl\"\n#include \"core/math.cl\"\n#include \"bsdfs/fresnel.cl\"\n" + text;
     BuildOptions build;
     build.lanes = lanes;
     build.kernels = "tests/inline.cl";
@@ -77,7 +77,7 @@ Finding probabilities_sum(const std::string &what, const FlatScene &flat) {
         meshes += emitter.kind == EMITTER_mesh;
     }
     for (const LightTriangle &triangle : flat.light_triangles)
-        triangles += area_of(flat, triangle.slot) / triangle.area;
+        triangles += area_of(flat, triangle.slot) / triangle.inverse_pdf;
     return exact(what + ": probabilities sum to 1",
                  std::abs(emitters - 1) < 1e-6 && std::abs(triangles - meshes) < 1e-6 * (1 + meshes));
 }
@@ -98,7 +98,7 @@ Finding densities_agree(const std::string &what, KernelProbe &probe, unsigned se
     for (size_t i = 0; i < drawn.count; i++)
         wrong += hits.bits(HIT_EMITTER, i) != drawn.bits(LIGHT_ID, i) ||
                  !(std::abs(hits.at(HIT_LIGHT_DENSITY, i) / drawn.at(LIGHT_DENSITY, i) - 1) < 1e-4) ||
-                 !(drawn.at(LIGHT_FACING_Z, i) > 0.999);
+                 !(drawn.at(LIGHT_NORMAL_Z, i) > 0.999);
     // Of points on an edge the ray may hit the neighbour.
     return exact(what + ": " + std::to_string(wrong) + " of 20000 densities differ", wrong <= 20);
 }

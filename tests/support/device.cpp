@@ -22,14 +22,11 @@ std::vector<int> tested_lanes() {
     return own == 1 ? std::vector<int>{1} : std::vector<int>{1, own};
 }
 
-Features all_features(const std::map<std::string, bool> &except) {
+Features all_features(const std::vector<unsigned> &without) {
     Features features;
-#define OPAL_FEATURE_ROW(name) features.list.push_back({#name, true, "a test"});
-    OPAL_FEATURES
-#undef OPAL_FEATURE_ROW
-    for (Feature &feature : features.list)
-        if (const auto found = except.find(feature.name); found != except.end())
-            feature.on = found->second;
+    features.list.fill({true, "a test"});
+    for (unsigned feature : without)
+        features.list[feature].on = false;
     features.axes.fill(-1);
     return features;
 }

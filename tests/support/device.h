@@ -17,8 +17,8 @@ const Device &device();
 // The widths of every kernel test: 1 and the device's own.
 std::vector<int> tested_lanes();
 
-// All features on but those named in `except` ({"tree", false}), every axis decided at run time.
-Features all_features(const std::map<std::string, bool> &except = {});
+// All features on but those `without` (FEATURE_*), every axis decided at run time.
+Features all_features(const std::vector<unsigned> &without = {});
 
 // Opal's own sources with those below tests/device/ as "tests/NAME.cl" among them.
 const Sources &sources();

@@ -1,4 +1,5 @@
 // The film's kernels on samples of the test's own making.
+#include "shared/film.h"
 #include "stats/moments.h"
 #include "support/checks.h"
 #include "support/kernels.h"
@@ -13,7 +14,7 @@ namespace opal::test {
 
 namespace {
 
-constexpr unsigned planes = 22, pixels = 3; // as in cl/film.cl
+constexpr unsigned pixels = 3;
 constexpr unsigned samples = 1u << 18;
 
 // `samples` samples a pixel. Pixel 0: one value throughout, which a plain sum of floats would lose as it grows. Pixel
@@ -48,9 +49,9 @@ Findings check_film(const Sources &sources, unsigned seed) {
         BuildOptions build;
         build.lanes = lanes;
         const cl::Program program =
-            build_program(device(), program_text(all_features({{"wide_filter", false}}), build, sources), build);
-        const Output<float> film(planes * pixels);
-        const Output<cl_uint> counts(pixels), invalid(17);
+            build_program(device(), program_text(all_features({FEATURE_wide_filter}), build, sources), build);
+        const Output<float> film(FILM_PLANES * pixels);
+        const Output<cl_uint> counts(pixels), invalid(1 + 2 * OPAL_INVALID_RECORDS);
         // In two passes, so that the sums of one go on in the next.
         const unsigned first = samples / 4;
         for (const auto &[from, count] : {std::pair{0u, first}, std::pair{first, samples - first}}) {
@@ -63,7 +64,7 @@ Findings check_film(const Sources &sources, unsigned seed) {
         }
         const std::vector<float> sums = film.read();
         const auto value = [&](unsigned plane, unsigned low, unsigned p) {
-            return double(sums[plane * pixels + p]) + double(sums[(plane + low) * pixels + p]);
+            return double(sums[plane * pixels + p]) + double(sums[low * pixels + p]);
         };
         for (unsigned p = 0; p < pixels; p++)
             for (unsigned c = 0; c < 3; c++) {
@@ -76,8 +77,9 @@ Findings check_film(const Sources &sources, unsigned seed) {
                     squares.add(double(color[c] * color[c]));
                 }
                 const std::string where = std::to_string(lanes) + " lanes, pixel " + std::to_string(p) + ": ";
-                findings.push_back(exact(where + "sum", close(value(0 + c, 3, p), sum.value())));
-                findings.push_back(exact(where + "squares", close(value(6 + c, 4, p), squares.value())));
+                findings.push_back(exact(where + "sum", close(value(FILM_SUM + c, FILM_SUM_LOW + c, p), sum.value())));
+                findings.push_back(
+                    exact(where + "squares", close(value(FILM_SQUARES + c, FILM_SQUARES_LOW + c, p), squares.value())));
             }
         findings.push_back(
             exact("samples counted", counts.read() == std::vector<cl_uint>{samples, samples, samples - 3}));

@@ -156,9 +156,9 @@ Findings check_tree(const Sources &sources, unsigned seed) {
 Findings check_tiny(const Sources &sources, unsigned seed) {
     const SceneDescription triangles = triangle_soup(30, 0.8, seed), pairs = quadrilaterals(20, 0.8, seed + 2);
     const FlatScene listed = flatten(pairs, 4);
-    Findings findings = {exact("30 triangles need no tree", !flatten(triangles, 4).features["tree"]),
+    Findings findings = {exact("30 triangles need no tree", !flatten(triangles, 4).features[FEATURE_tree]),
                          exact("nor do 20 quadrilaterals, most of them plane as floats have them",
-                               !listed.features["tree"] && listed.listed_faces.size() < 30)};
+                               !listed.features[FEATURE_tree] && listed.faces.size() < 30)};
     append(findings, compare_all("30 triangles", triangles, {4, 16}, sources, seed + 1));
     append(findings, compare_all("20 quadrilaterals", pairs, {4, 16}, sources, seed + 3));
     return findings;

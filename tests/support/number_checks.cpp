@@ -100,7 +100,7 @@ Findings check_known_numbers(const Sources &sources, unsigned) {
     }
     Sources with_kernel = sources;
     with_kernel.files["tests/inline.cl"] =
-        "#include \"lanes.cl\"\n#include \"math.cl\"\n#include \"rng.cl\"\n"
+        "#include \"core/lanes.cl\"\n#include \"core/math.cl\"\n#include \"core/rng.cl\"\n"
         "kernel void largest(global float *out) { out[0] = unit_real(0xffffffffu); out[1] = unit_real(0u); }\n";
     BuildOptions build;
     build.kernels = "tests/inline.cl";

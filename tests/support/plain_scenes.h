@@ -48,11 +48,4 @@ inline double area_of(const FlatScene &scene, uint slot) {
     return length(cross(Vec3{b[0], b[1], b[2]} - p, Vec3{c[0], c[1], c[2]} - p)) / 2;
 }
 
-inline const std::string &reason(const FlatScene &scene, std::string_view name) {
-    for (const Feature &feature : scene.features.list)
-        if (feature.name == name)
-            return feature.reason;
-    throw std::logic_error("no such feature");
-}
-
 } // namespace opal

@@ -1,5 +1,8 @@
-// warp: maps from the unit square to domains, each with its density: square_to_x draws, square_to_x_pdf says how densely.
-// A density is per area (tent, disk) or per solid angle (sphere, hemisphere, Beckmann, Phong lobe); 0 outside the domain.
+// warp: maps from the unit square to other domains. square_to_NAME draws a point, square_to_NAME_pdf is its density:
+// per area (tent, disk) or per solid angle (sphere, hemisphere, Beckmann, Phong lobe), and 0 outside the domain. z is
+// the axis.
+#include "core/lanes.cl"
+#include "core/math.cl"
 
 // Tent on [-1, 1]^2: (1 - |x|)(1 - |y|), by inversion of each half.
 static real tent_1d(real u) { return u < R(0.5) ? sqrt(2 * u) - 1 : 1 - sqrt(2 - 2 * u); }
@@ -12,9 +15,12 @@ static v2 square_to_uniform_disk(v2 u) {
     real r = sqrt(u.x);
     return v2_of(r * cs.x, r * cs.y);
 }
-static real square_to_uniform_disk_pdf(v2 p) { return mul_add(p.x, p.x, p.y * p.y) <= 1 ? (real)(INV_PI) : (real)(0); }
+static real square_to_uniform_disk_pdf(v2 p) {
+    return mul_add(p.x, p.x, p.y * p.y) <= 1 ? (real)(INV_PI) : (real)(0);
+}
 
-// A direction from its height z and azimuth 2 pi v; sine = sqrt(1 - z^2), given because 1 - z^2 loses digits near z = 1.
+// The direction of height z and azimuth 2 pi v. The caller knows sine = sqrt(1 - z^2) without the digits that 1 - z^2
+// loses near 1.
 static v3 direction_of(real z, real sine, real v) {
     v2 cs = cos_sin_2pi(v);
     return v3_of(sine * cs.x, sine * cs.y, z);
@@ -40,18 +46,20 @@ static v3 square_to_beckmann(v2 u, real alpha) {
     return direction_of(z, sqrt(tan2) * z, u.y);
 }
 static real square_to_beckmann_pdf(v3 h, real alpha) {
-    real q = 1 / (alpha * h.z); // multiplied one by one: alpha^2 may underflow
+    real q = 1 / (alpha * h.z); // squared below factor by factor, because alpha^2 may underflow
     real density = exp(-sin2_theta(h) * q * q) * INV_PI * q * q * (q * alpha);
     return h.z > 0 ? density : (real)(0);
 }
 
-// Phong lobe around z: (n + 1)/(2 pi) cos^n. z = u^(1/(n+1)); from 1 - z by expm1, which keeps all digits for large n.
+// Phong lobe around z: (n + 1)/(2 pi) cos^n. z = u^(1/(n+1)), found as 1 - z by expm1, which keeps all digits for large
+// n.
 static v3 square_to_phong_lobe(v2 u, real n) {
-    real lowered = -expm1(log(u.x) / (n + 1)); // 1 - z; 1 at u = 0, where the logarithm is -inf
+    real lowered = -expm1(log(u.x) / (n + 1)); // 1 - z, which is 1 at u = 0, where the logarithm is -inf
     return direction_of(1 - lowered, sqrt(lowered * (2 - lowered)), u.y);
 }
-// cos^n as exp(n log cos). Near the axis log cos comes from sin^2, as cos itself rounds away what a large n magnifies. No pow: it
-// costs more, and PoCL 3.1's of eight doubles is wrong in all lanes where one lane's base is 0 or NaN.
+// cos^n as exp(n log cos). Near the axis log cos is computed from sin^2, because cos has rounded away the digits that a
+// large n magnifies. pow() costs more, and PoCL 3.1's pow of eight doubles is wrong in all lanes where one lane's base
+// is 0 or NaN.
 static real phong_lobe_power(v3 w, real n) {
     real s2 = sin2_theta(w);
     real log_z = s2 < R(0.5) ? R(0.5) * log1p(-s2) : log(w.z);

@@ -1,14 +1,16 @@
-// lanes: the types that hold LANES paths at once, and the few operations that know the width.
+// lanes: the types that hold LANES paths at once, and the few operations that depend on the width.
 //
-// A work-item carries LANES paths, one to a lane. Shading code is written on these types and reads the same at every
+// A work-item carries LANES paths, one to a lane. Shading code is written in these types and reads the same at every
 // width (1, 4, 8, 16) and in both precisions. At width 1 they are plain scalars.
 //   real   one number a lane: float, or double where OPAL_DOUBLE
-//   mask   one truth a lane, as a comparison of reals gives it: combine with & | !, never with ~ (a scalar's truth is 1)
-//   ints, uints   one index or hash a lane; their comparisons go through to_mask before they meet a mask
+//   mask   one truth value a lane, as comparisons of reals give it. Combine masks with & | !, never with ~, because a
+//          scalar's true is 1.
+//   ints, uints   one integer a lane. Convert their comparisons by to_mask before combining them with a mask.
 //   real1, real8  one number; eight numbers of one ray (children of a node, triangles of a block)
-//   key1, mask8   an integer as wide as a real1, eight of them: keys of bvh.cl
+//   key1, mask8   an integer as wide as a real1; eight of them (the keys of trace/)
 #if defined(__clang__)
-#pragma clang diagnostic ignored "-Wpsabi" // vectors wider than the processor's are passed in memory: all callers are in this program
+// clang warns that wide vectors are passed in memory. It does not matter: every caller is in this program.
+#pragma clang diagnostic ignored "-Wpsabi"
 #endif
 #define CAT_(a, b) a##b
 #define CAT(a, b) CAT_(a, b)
@@ -53,11 +55,11 @@ typedef int2 quarter_keys;
 #define LOAD(T, array) ((array)[0])
 #define to_mask(condition) (condition)
 #define to_ints(m) (m)
-#define AT(array, i, field) array[i] field
-#define GATHER(T, array, i, field) ((T)(AT(array, i, field)))
+#define GATHER(T, array, i, field) ((T)(array[i] field))
+#define GATHER_WORD(T, pointer, word) ((T)((pointer)[word]))
 #else
 #define WIDE(T) CAT(T, LANES)
-// By pairs of lanes in one word: PoCL's any() asks one lane after the other.
+// Is any lane true? Lanes are tested two to a 64-bit word, because PoCL's any() tests one lane after the other.
 #define HALF_4 2
 #define HALF_8 4
 #define HALF_16 8
@@ -78,16 +80,21 @@ typedef int2 quarter_keys;
 #define LOAD(T, array) CAT(vload, LANES)(0, array)
 #define to_mask(condition) CAT(convert_, WIDE(MASK_NAME))(condition)
 #define to_ints(m) CAT(convert_, WIDE(int))(m)
-// Words of all lanes by one vector of indices: compilers make hardware gathers of it.
 #define GATHER_4(p, i) p[(i).s0], p[(i).s1], p[(i).s2], p[(i).s3]
 #define GATHER_8(p, i) GATHER_4(p, i), p[(i).s4], p[(i).s5], p[(i).s6], p[(i).s7]
-#define GATHER_16(p, i) GATHER_8(p, i), p[(i).s8], p[(i).s9], p[(i).sa], p[(i).sb], p[(i).sc], p[(i).sd], p[(i).se], p[(i).sf]
-// array[i] field of each lane's own i: GATHER(real, scene->bsdfs, id, .u.phong.n)
-#define GATHER(T, array, i, field) ((T)(CAT(GATHER_, LANES)((&(array)[0] field), ((i) * (uint)(sizeof((array)[0]) / 4)))))
+#define GATHER_16(p, i) \
+    GATHER_8(p, i), p[(i).s8], p[(i).s9], p[(i).sa], p[(i).sb], p[(i).sc], p[(i).sd], p[(i).se], p[(i).sf]
+// Reads `field` of array[i], each lane with its own i: GATHER(real, scene->bsdfs, id, .u.phong.n). It reads for
+// inactive lanes too: every lane's index must be valid. One vector of word indices lets compilers emit hardware
+// gathers.
+#define GATHER(T, array, i, field) GATHER_WORD(T, &(array)[0] field, (i) * (uint)(sizeof((array)[0]) / 4))
+// Likewise pointer[word], of 4-byte words.
+#define GATHER_WORD(T, pointer, word) ((T)(CAT(GATHER_, LANES)((pointer), (word))))
 #endif
 
-// A field of three floats, as one v3: GATHER_V3(scene->bsdfs, id, .u.diffuse.albedo)
-#define GATHER_V3(array, i, field) v3_of(GATHER(real, array, i, field[0]), GATHER(real, array, i, field[1]), GATHER(real, array, i, field[2]))
+// Reads a field of three floats as one v3: GATHER_V3(scene->bsdfs, id, .u.diffuse.albedo)
+#define GATHER_V3(array, i, field) \
+    v3_of(GATHER(real, array, i, field[0]), GATHER(real, array, i, field[1]), GATHER(real, array, i, field[2]))
 
 typedef WIDE(REAL_NAME) real;
 #if LANES == 1
@@ -104,13 +111,13 @@ typedef WIDE(uint) uints;
 #define to_real(i) CAT(convert_, WIDE(REAL_NAME))(i)
 #define to_uints(x) CAT(convert_, WIDE(uint))(x)
 
-// a b + c, as one instruction where the device has one: PoCL's mad() never is
+// a b + c, which compilers contract to one instruction where the device has it. PoCL's mad() stays two.
 #define mul_add(a, b, c) ((a) * (b) + (c))
 
 #define NO_LANES ((mask)(0))
 #define ALL_LANES (!NO_LANES)
 
-// Every function but kernels is static: what a variant leaves out is then not compiled at all (a quarter of the cold start).
+// Every function but kernels is static: compilers then drop unused ones unread, a quarter of the cold compile time.
 typedef struct { real x, y; } v2;
 typedef struct { real x, y, z; } v3;
 
@@ -123,47 +130,23 @@ static v3 v3_sub(v3 a, v3 b) { return v3_of(a.x - b.x, a.y - b.y, a.z - b.z); }
 static v3 v3_mul(v3 a, v3 b) { return v3_of(a.x * b.x, a.y * b.y, a.z * b.z); }
 static v3 v3_scale(v3 a, real s) { return v3_of(a.x * s, a.y * s, a.z * s); }
 static v3 v3_neg(v3 a) { return v3_of(-a.x, -a.y, -a.z); }
-static v3 v3_mad(v3 a, real s, v3 b) { return v3_of(mul_add(a.x, s, b.x), mul_add(a.y, s, b.y), mul_add(a.z, s, b.z)); } // a s + b
+static v3 v3_mad(v3 a, real s, v3 b) { // a s + b
+    return v3_of(mul_add(a.x, s, b.x), mul_add(a.y, s, b.y), mul_add(a.z, s, b.z));
+}
 static real v3_dot(v3 a, v3 b) { return mul_add(a.x, b.x, mul_add(a.y, b.y, a.z * b.z)); }
 static v3 v3_cross(v3 a, v3 b) { return v3_of(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x); }
 static v3 v3_normalize(v3 a) { return v3_scale(a, rsqrt(v3_dot(a, a))); }
 static v3 v3_abs(v3 a) { return v3_of(fabs(a.x), fabs(a.y), fabs(a.z)); }
 
-// The lanes of m, a bit each, to be walked through by lowest_lane; the mask of such bits; how many they are.
+// A set of lanes as bits, lane i in bit i, to loop over by lowest_lane.
 static uint lanes_of(mask m) { return LANE_BITS(to_ints(m)); }
 static int lowest_lane(uint lanes) { return (int)popcount(~lanes & (lanes - 1)); } // CL 1.2 has no ctz
 static mask mask_of(uint lanes) { return to_mask((LANE_PLACES & (int)lanes) != 0); }
 static int count_lanes(mask m) { return (int)popcount(lanes_of(m)); }
 
+// `yes` in the lanes of m, `no` in the others.
 static uints uints_pick(mask m, uints yes, uints no) { return to_ints(m) ? yes : no; }
 static v3 v3_pick(mask m, v3 yes, v3 no) { return v3_of(m ? yes.x : no.x, m ? yes.y : no.y, m ? yes.z : no.z); }
 
 // a, or -a where s is negative.
 static real turned_as(real a, real s) { return real_of_bits(real_bits(a) ^ (real_bits(s) & ~NO_KEY)); }
-
-// Comparisons that leave minps and maxps alone: NaN in a is dropped, NaN in b stays.
-static real8 real8_min(real8 a, real8 b) { return a < b ? a : b; }
-static real8 real8_max(real8 a, real8 b) { return a > b ? a : b; }
-
-// The true elements of a comparison of real8s, a byte each, lowest first: a set to walk through by first_of.
-static ulong bytes_of(mask8 truth) { return as_ulong(convert_char8(truth)) & 0x0101010101010101ul; }
-static ulong bytes_of_bits(uint eight) { // likewise, of eight bits
-    return (((eight * 0x0101010101010101ul & 0x8040201008040201ul) + 0x7f7f7f7f7f7f7f7ful) >> 7) & 0x0101010101010101ul;
-}
-static uint first_of(ulong bytes) { return (uint)(popcount(~bytes & (bytes - 1)) >> 3); } // CL 1.2 has no ctz
-
-// Asks for the cache line at p, a pointer to global char. PoCL's prefetch() does nothing; only a compiler for the CPU itself has the other.
-#if defined(__clang__) && defined(__x86_64__)
-#define FETCH(p) __builtin_prefetch((const void *)(size_t)(p))
-#else
-#define FETCH(p) prefetch(p, 64)
-#endif
-
-// Eight floats of a record in memory, as reals.
-static real8 load8(global const float *p) {
-#if OPAL_DOUBLE
-    return convert_double8(vload8(0, p));
-#else
-    return vload8(0, p);
-#endif
-}

@@ -1,27 +1,33 @@
-// math: constants, frames and the few functions that are faster or safer here than in the library.
+// math: constants, frames, and the few functions that are faster or safer here than in the library.
+#include "core/lanes.cl"
+
 #define PI R(3.14159265358979323846)
 #define INV_PI R(0.31830988618379067154)
 #define INV_TWO_PI R(0.15915494309189533577)
 #define INV_FOUR_PI R(0.07957747154594766788)
-#define FAR R(1e30) // farther than anything: scenes are flattened to about [-1, 1]; finite, so that fast math may have it
+#define FAR R(1e30) // beyond any scene, which is flattened to about [-1, 1]; finite, as fast math has no infinity
 
 static real square(real x) { return x * x; }
-static real real_min(real a, real b) { return a < b ? a : b; } // NaN in a is dropped, NaN in b stays: minps, unlike fmin
+// Minimum and maximum by one comparison, as minps does it: NaN in a is dropped, NaN in b stays. fmin and fmax cost
+// more.
+static real real_min(real a, real b) { return a < b ? a : b; }
 static real real_max(real a, real b) { return a > b ? a : b; }
 static real safe_sqrt(real x) { return sqrt(real_max(x, (real)(0))); }
 
-// sin and cos of 2 pi u for any u of moderate size, without the library's argument reduction: u is reduced exactly to an
-// eighth of a turn, where the Taylor series ends below half an ulp (x^11/11! < 2^-28; in double x^19/19! < 2^-57).
+// cos and sin of 2 pi u (x and y) for any u of moderate size. u is reduced exactly to an eighth of a turn, where the
+// Taylor series ends below half an ulp (x^11/11! < 2^-28; in double x^19/19! < 2^-57). The library's argument reduction
+// costs more.
 static v2 cos_sin_2pi(real u) {
     real quarter = rint(4 * u);
     real x = (u - R(0.25) * quarter) * R(6.28318530717958647693);
     real x2 = x * x;
     real s = R(2.7557319223985893e-06), c = R(-2.7557319223985888e-07);
     if (OPAL_DOUBLE) {
-        s = mul_add(x2, mul_add(x2, mul_add(x2, mul_add(x2, (real)(R(2.8114572543455206e-15)), (real)(R(-7.6471637318198164e-13))),
-                                (real)(R(1.6059043836821613e-10))), (real)(R(-2.5052108385441720e-08))), s);
-        c = mul_add(x2, mul_add(x2, mul_add(x2, (real)(R(4.7794773323873853e-14)), (real)(R(-1.1470745597729725e-11))),
-                        (real)(R(2.0876756987868099e-09))), c);
+        real s4 = mul_add(x2, (real)(R(2.8114572543455206e-15)), (real)(R(-7.6471637318198164e-13)));
+        real s3 = mul_add(x2, mul_add(x2, s4, (real)(R(1.6059043836821613e-10))), (real)(R(-2.5052108385441720e-08)));
+        real c3 = mul_add(x2, (real)(R(4.7794773323873853e-14)), (real)(R(-1.1470745597729725e-11)));
+        s = mul_add(x2, s3, s);
+        c = mul_add(x2, mul_add(x2, c3, (real)(R(2.0876756987868099e-09))), c);
     }
     s = mul_add(x2, mul_add(x2, mul_add(x2, s, (real)(R(-1.9841269841269841e-04))), (real)(R(8.3333333333333333e-03))),
             (real)(R(-1.6666666666666667e-01)));
@@ -36,9 +42,10 @@ static v2 cos_sin_2pi(real u) {
     return v2_of((turn == 1 | turn == 2) ? -cosine : cosine, turn >= 2 ? -sine : sine);
 }
 
-// An orthonormal frame around the unit vector n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited"). Theirs jumps where
-// n.z changes its sign, which the last bit decides on upright walls: each precision and device then turned the same random numbers
-// another way. Here it jumps at a height that nothing is built at, and 1 / (sign + n.z) stays below 1.6.
+// An orthonormal frame around the unit vector n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited"). Their
+// frame jumps where n.z changes sign. On upright walls the last bit decides that, so that each precision and device
+// turned the same random numbers differently. Here it jumps at FRAME_JUMP, a height that hardly any surface has; 1 /
+// (sign + n.z) stays below 1.6.
 #define FRAME_JUMP R(-0.3719)
 typedef struct { v3 s, t, n; } Frame;
 
@@ -52,8 +59,18 @@ static v3 to_local(Frame f, v3 v) { return v3_of(v3_dot(v, f.s), v3_dot(v, f.t),
 static v3 to_world(Frame f, v3 v) { return v3_mad(f.s, v.x, v3_mad(f.t, v.y, v3_scale(f.n, v.z))); }
 
 static real v3_largest(v3 a) { return real_max(a.x, real_max(a.y, a.z)); }
-static real sin2_theta(v3 w) { return mul_add(w.x, w.x, w.y * w.y); } // not 1 - cos^2, which loses all digits near the pole
+// sin^2 of the angle to z. 1 - cos^2 would lose all digits near the pole.
+static real sin2_theta(v3 w) { return mul_add(w.x, w.x, w.y * w.y); }
 static v3 reflect_z(v3 w) { return v3_of(-w.x, -w.y, w.z); }
 
 // Luminance of linear RGB (ITU-R BT.709).
 static real luminance(v3 c) { return R(0.212671) * c.x + R(0.715160) * c.y + R(0.072169) * c.z; }
+
+#define float_bits(x) CAT(as_, WIDE(uint))(CAT(convert_, WIDE(float))(x))
+
+// Are all three finite? Exponent bits are compared, because fast math removes isfinite().
+static mask is_finite(v3 c) {
+    uints all = (uints)(0x7f800000u);
+    uints x = float_bits(c.x), y = float_bits(c.y), z = float_bits(c.z);
+    return to_mask((x & all) != all) & to_mask((y & all) != all) & to_mask((z & all) != all);
+}

@@ -1,8 +1,12 @@
-// rng: random numbers that depend on (pixel, sample index, dimension, seed) alone, so that an image does not depend on how
-// its samples are cut into passes or spread over lanes. Every number is k 2^-24 with k < 2^24: in [0, 1), exact in float.
+// rng: random numbers that depend on (pixel, sample index, dimension, seed) alone, so that an image does not depend on
+// how its samples are cut into passes or spread over lanes. Every number is k 2^-24 with k < 2^24: in [0, 1), exact in
+// float. draw() in scene.cl picks the sampler that the scene asks for.
 //
 // A dimension is a pair of numbers. Dimension 0 places the sample in its pixel; a path's segment d owns the
 // DIMS_A_SEGMENT dimensions from 1 + d DIMS_A_SEGMENT on.
+#include "core/lanes.cl"
+#include "core/math.cl"
+
 #define DIM_FILM 0
 #define DIM_BSDF 0         // within a segment: direction
 #define DIM_LOBE 1         // .x which lobe, .y Russian roulette
@@ -36,8 +40,9 @@ static void pcg4d(uints *x, uints *y, uints *z, uints *w) {
     *x += *y * *w; *y += *z * *x; *z += *x * *y; *w += *y * *z;
 }
 
+// The sampler of sample `sample` of a pixel.
 static Sampler sampler_start(uints pixel, uints sample, uint seed) {
-    uints x = pixel, y = sample, z = (uints)(seed), w = (uints)(0x9e3779b9u);
+    uints x = pixel, y = sample, z = (uints)(seed), w = (uints)(0x9e3779b9u); // any constant: here 2^32 / golden ratio
     pcg4d(&x, &y, &z, &w);
     Sampler s = {pixel, sample, x, y};
     return s;
@@ -49,19 +54,21 @@ static Sampler sampler_start(uints pixel, uints sample, uint seed) {
 // The upper 24 bits as a number in [0, 1).
 static real unit_real(uints bits) { return to_real(bits >> 8) * GRID_STEP; }
 
-// The probability with which a choice of probability p, 0 to 1, is drawn: a random number u is k 2^-24, so that u < p comes true with
-// probability ceil(p 2^24) 2^-24. A weight that divides by p would be wrong for ever, by 1 % where p is 1e-6.
+// The probability that u < p for a random number u, with p in [0, 1]: ceil(p 2^24) 2^-24, because u is a multiple of
+// 2^-24. Weights must divide by it. Dividing by p is a bias, 1 % of it where p is 1e-6.
 static real drawn_probability(real p) {
-    real numbers = p * GRID, whole = to_real(CAT(convert_, WIDE(int))(numbers)); // ceil() is a dozen instructions on PoCL
+    // ceil() by an integer, because PoCL's own is a dozen instructions.
+    real numbers = p * GRID, whole = to_real(CAT(convert_, WIDE(int))(numbers));
     return (whole < numbers ? whole + 1 : whole) * GRID_STEP;
 }
 
-// A choice between two things by the number u. Weights divide by the probability that it tells, never by the one that was wished for.
+// A choice between two things. Weights divide by `probability`, which is exact, never by the p that was asked for.
 typedef struct {
-    mask first;        // u < p
-    real probability;  // of what was chosen
+    mask first;        // u < p: the first one is chosen
+    real probability;  // of the one that is chosen
 } Choice;
 
+// Chooses the first of two things with probability p, by the random number u.
 static Choice choose(real p, real u) {
     real drawn = drawn_probability(p);
     Choice c;
@@ -89,8 +96,8 @@ static uints owen_scramble(uints x, uints seed) {
     return reverse_bits(x);
 }
 
-// The second Sobol dimension of index i: its generator is Pascal's triangle mod 2, a sum over subsets of bit positions,
-// hence five butterflies on the reversed bits.
+// The second Sobol dimension of index i. Its generator matrix is Pascal's triangle mod 2, which sums over subsets of
+// bit positions: five butterflies on the reversed bits.
 static uints sobol_second(uints i) {
     uints x = reverse_bits(i);
     x ^= (x & 0x55555555u) << 1;
@@ -109,8 +116,9 @@ static u2 sobol_pair(Sampler s, uints dimension, uint seed) {
     return pair;
 }
 
-// Place of i in a random permutation of 0 ... n-1 (Kensler 2013, "Correlated Multi-Jittered Sampling", listing 3), by p, then turned by
-// a number of its own: p alone would favour some places by up to 0.3 % where n is small.
+// The place of i in a random permutation of 0 ... n-1, which p selects (Kensler 2013, "Correlated Multi-Jittered
+// Sampling", listing 3). The result is rotated by `turn`, because p alone favours some places by up to 0.3 % where n is
+// small.
 static uints permute(uints i, uint n, uints p, uints turn) {
     uint w = n - 1;
     w |= w >> 1; w |= w >> 2; w |= w >> 4; w |= w >> 8; w |= w >> 16;
@@ -127,7 +135,7 @@ static uints permute(uints i, uint n, uints p, uints turn) {
     return (r + turn % n) % n;
 }
 
-// One jittered stratum of a grid of at least `spp` cells a sample, in an order of its own for each dimension.
+// One jittered stratum of a grid of at least `spp` cells. Each dimension goes through the cells in an order of its own.
 static u2 stratified_pair(Sampler s, uints dimension, uint spp, uint seed) {
     spp = min(spp, 1u << 30); // or the number of cells overflows
     uint columns = max(1u, (uint)sqrt((float)spp)), rows = (spp + columns - 1) / columns, cells = columns * rows;
@@ -136,7 +144,7 @@ static u2 stratified_pair(Sampler s, uints dimension, uint spp, uint seed) {
     u3 jitter = pcg3d(s.key0, s.key1, dimension);
     uints cell = permute(s.sample - round * cells, cells, h.x, h.y);
     uints row = cell / columns, column = cell - row * columns;
-    // (cell + u) / n rounds up to 1 for the last cell: kept below.
+    // (cell + u) / n may round up to 1 in the last cell, hence the minimum.
     uints x = to_uints(real_min((to_real(column) + unit_real(jitter.x)) / (real1)columns * GRID, (real)(GRID - 1)));
     uints y = to_uints(real_min((to_real(row) + unit_real(jitter.y)) / (real1)rows * GRID, (real)(GRID - 1)));
     u2 pair = {x << 8 | (jitter.x & 255u), y << 8 | (jitter.y & 255u)};

@@ -1,7 +1,11 @@
-// fresnel: reflectance of a smooth boundary between dielectrics, unpolarised.
+// fresnel: reflectance of a smooth boundary between dielectrics, for unpolarised light.
+#include "core/lanes.cl"
+#include "core/math.cl"
 
-// Index over index, far side over near side; its inverse; eta^2 - 1, from differences of the indices.
-typedef struct { real eta, inverse_eta, step; } Boundary;
+typedef struct {
+    real eta, inverse_eta; // index of refraction of the far side over that of the near side, and its inverse
+    real step;             // eta^2 - 1, computed from differences of the indices
+} Boundary;
 
 static Boundary boundary_of(real near, real far) {
     real inverse = 1 / near;
@@ -9,12 +13,12 @@ static Boundary boundary_of(real near, real far) {
     return b;
 }
 
-// The cosine of the refracted direction, given sin^2 on the near side; 0 beyond the critical angle.
+// The cosine of the refracted direction, given sin^2 of the incident one; 0 beyond the critical angle.
 static real refracted_cosine(real sin2, Boundary b) { return safe_sqrt(1 - sin2 * square(b.inverse_eta)); }
 
-// Fresnel reflectance for cosine and sin^2 on the near side. The amplitudes
+// Fresnel reflectance, given cosine (0 to 1) and sin^2 of the incident direction. The amplitudes
 //   r_s = (c - eta c') / (c + eta c'),  r_p = (eta c - c') / (eta c + c')
-// are multiplied out by Snell's law, so that no difference of nearly equal products is left:
+// are multiplied out by Snell's law, which leaves no difference of nearly equal products:
 //   r_s = (1 - eta^2) / (c + eta c')^2,  r_p = (eta^2 - 1)(c^2 - sin^2/eta^2) / (eta c + c')^2.
 static real fresnel_dielectric(real cosine, real sin2, Boundary b) {
     real sin2_far = sin2 * square(b.inverse_eta);

@@ -1,0 +1,28 @@
+// interface: what every BSDF offers (bsdfs/NAME.cl for each row of bsdfs/list.h).
+//
+// Directions are in the local frame: z is the shading normal, wi points to the viewer, wo to the light; both are unit
+// and point away from the surface.
+//   NAME_bsdf NAME_at(scene, id)                parameters of the materials `id`, one a lane
+//   v3   NAME_eval(b, wi, wo)                   f(wi, wo) without the cosine, 1/sr; 0 for discrete BSDFs
+//   real NAME_pdf(b, wi, wo)                    density of NAME_sample, solid angle measure, 1/sr; 0 for discrete BSDFs
+//   BsdfSample NAME_sample(b, wi, u, lobe)      draws wo by random numbers u and lobe in [0, 1)
+// Functions compute all lanes; their callers pick those that are meant.
+#include "core/lanes.cl"
+
+typedef struct {
+    v3 wo;           // unit
+    v3 weight;       // f cos / pdf, of a discrete BSDF the radiance's factor; 0 where nothing is reflected, never NaN
+    real pdf;        // equals NAME_pdf(wo) up to rounding; 0 where discrete
+    real eta;        // index of refraction of wo's side over wi's side
+    mask discrete;   // wo has no density, so that light sampling cannot find it
+} BsdfSample;
+
+static BsdfSample bsdf_sample_of(v3 wo, v3 weight, real pdf, real eta, mask discrete) {
+    BsdfSample s = {wo, weight, pdf, eta, discrete};
+    return s;
+}
+
+static BsdfSample bsdf_sample_pick(mask m, BsdfSample yes, BsdfSample no) {
+    return bsdf_sample_of(v3_pick(m, yes.wo, no.wo), v3_pick(m, yes.weight, no.weight), m ? yes.pdf : no.pdf,
+                          m ? yes.eta : no.eta, m ? yes.discrete : no.discrete);
+}

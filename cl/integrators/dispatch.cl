@@ -1,0 +1,19 @@
+// dispatch: one step of the chosen integrator (integrators/NAME.cl for each choice of the axis `integrator`).
+//   mask NAME_step(scene, path, hit, active)   adds what the path finds at `hit` to its radiance and sets its next ray;
+//                                              returns the lanes whose path goes on
+#include "core/lanes.cl"
+#include "integrators/ao.cl"
+#include "integrators/direct_lighting.cl"
+#include "integrators/normals.cl"
+#include "integrators/path.cl"
+#include "integrators/simple.cl"
+#include "integrators/steps.cl"
+#include "integrators/whitted.cl"
+#include "scene.cl"
+#include "shared/strategy.h"
+
+static mask integrator_step(const Scene *scene, Path *path, Hit hit, mask active) {
+#define STEP(axis, name, help) if (CHOSEN(scene, integrator, name)) return name##_step(scene, path, hit, active);
+    OPAL_CHOICES_integrator(STEP)
+    return NO_LANES;
+}

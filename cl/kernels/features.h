@@ -1,0 +1,34 @@
+// The features of a kernel: each is compiled in or left out. flatten decides it for a scene. Every feature is always
+// defined as OPAL_HAS_name, 0 or 1, in this order. Device code asks `if (OPAL_HAS_name)`, so that each variant is parsed
+// and type-checked.
+#ifndef OPAL_FEATURES_H
+#define OPAL_FEATURES_H
+
+#include "bsdfs/list.h"
+#include "emitters/list.h"
+
+#define OPAL_BSDF_FEATURE(name) OPAL_FEATURE_ROW(bsdf_##name, "bsdf_" #name)
+#define OPAL_EMITTER_FEATURE(name) OPAL_FEATURE_ROW(emitter_##name, "emitter_" #name)
+
+// Define OPAL_FEATURE_ROW(name, shown) and expand this; `shown` is what `opal inspect` calls the feature.
+#define OPAL_FEATURES \
+    OPAL_BSDFS(OPAL_BSDF_FEATURE) \
+    OPAL_EMITTERS(OPAL_EMITTER_FEATURE) \
+    /* several emitters, one of which is chosen; else emitter 0 is meant */ \
+    OPAL_FEATURE_ROW(many_emitters, "many_emitters") \
+    /* some mesh interpolates vertex normals */ \
+    OPAL_FEATURE_ROW(shading_normals, "shading_normals") \
+    /* the face list, tested by all lanes at once: a tiny scene, or the largest faces */ \
+    OPAL_FEATURE_ROW(face_list, "listed") \
+    /* a tree of the other triangles, walked lane by lane */ \
+    OPAL_FEATURE_ROW(tree, "tree") \
+    /* the tree is larger than a core's caches: walks prefetch waiting children */ \
+    OPAL_FEATURE_ROW(large_tree, "large_tree") \
+    /* the pixel filter reaches beyond its pixel */ \
+    OPAL_FEATURE_ROW(wide_filter, "wide_filter")
+
+#define OPAL_FEATURE_ROW(name, shown) FEATURE_##name,
+enum { OPAL_FEATURES FEATURE_COUNT };
+#undef OPAL_FEATURE_ROW
+
+#endif

@@ -1,0 +1,24 @@
+// The scene's tables in the device's memory, each said once: Scene and the kernels' parameters (cl/scene.cl), the
+// host's vectors, their upload and `opal inspect` are made of this list.
+#ifndef OPAL_SCENE_TABLES_H
+#define OPAL_SCENE_TABLES_H
+
+#include "bsdfs/list.h"
+#include "emitters/list.h"
+#include "shared/types.h"
+
+// TABLE(record, name, shown): an array of records; `shown` is what messages call it. The order is that of the
+// parameters.
+#define OPAL_TABLES(TABLE) \
+    TABLE(BvhNode, nodes, "nodes")                              /* none: no tree */ \
+    TABLE(TriangleBlock, blocks, "blocks") \
+    TABLE(Triangle, triangles, "triangles") \
+    TABLE(float, normals, "normals")                            /* 3 each */ \
+    TABLE(float, face_vertices, "listed vertices")              /* of the face list: 3 each, distinct */ \
+    TABLE(FaceRecord, faces, "listed faces")                    /* the face list, beside the tree */ \
+    TABLE(MeshRecord, meshes, "meshes") \
+    TABLE(BsdfRecord, bsdfs, "bsdfs")                           /* equal records are shared */ \
+    TABLE(EmitterRecord, emitters, "emitters") \
+    TABLE(LightTriangle, light_triangles, "light triangles")
+
+#endif

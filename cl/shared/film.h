@@ -1,0 +1,21 @@
+// The film in the device's memory: the samples that a pass leaves, and the sums that they are added to.
+#ifndef OPAL_FILM_H
+#define OPAL_FILM_H
+
+#define OPAL_SAMPLE_FLOATS 3            // of a sample: r, g, b
+#define OPAL_SAMPLE_EMPTY 0x7fc0de1au   // bits of a sample's first float where it was not rendered
+#define OPAL_INVALID_RECORDS 8          // so many samples that are not finite are recorded by pixel and index
+
+// The film's planes, one float a pixel each. A sum is a pair of floats: a plane, and the low part that it has lost to
+// rounding.
+enum {
+    FILM_SUM = 0,           // of r, g, b
+    FILM_SUM_LOW = 3,
+    FILM_SQUARES = 6,       // of r^2, g^2, b^2, luminance^2
+    FILM_SQUARES_LOW = 10,
+    FILM_WEIGHTED = 14,     // wide filters: of w r, w g, w b, w
+    FILM_WEIGHTED_LOW = 18,
+    FILM_PLANES = 22
+};
+
+#endif

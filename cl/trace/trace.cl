@@ -1,0 +1,50 @@
+// trace: closest and any hit of each lane. The faces of the face list are tested against all lanes at once (faces.cl),
+// the other triangles are in a tree, which each lane walks alone: by one_lane/walk.cl where the kernel carries one
+// lane, as GPUs run it, else by many_lanes/walk.cl.
+#include "core/lanes.cl"
+#include "scene.cl"
+#include "shared/types.h"
+#include "trace/faces.cl"
+#include "trace/rays.cl"
+#if LANES == 1
+#include "trace/one_lane/walk.cl"
+#else
+#include "trace/many_lanes/walk.cl"
+#endif
+
+// The nearest hit of each active lane.
+static Hit closest_hit(const Scene *scene, Ray ray, mask active) {
+    Hit hit = {ray.tmax, (real)(0), (real)(0), (uints)(OPAL_NONE)};
+    if (OPAL_HAS_face_list) hit = faces_closest(scene, ray);
+    if (!OPAL_HAS_tree) return hit;
+    ray.tmax = hit.t;
+    TreeRays rays;
+    prepare_rays(&rays, scene, ray, active);
+    if (rays.walking == 0) return hit;
+    LaneHits hits;
+    STORE(hit.t, hits.t); STORE(hit.u, hits.u); STORE(hit.v, hits.v); STORE(hit.slot, hits.slot);
+    walk_closest(scene, &rays, &hits);
+    Hit nearest = {LOAD(real, hits.t), LOAD(real, hits.u), LOAD(real, hits.v), LOAD(uints, hits.slot)};
+    return nearest;
+}
+
+// The active lanes whose ray is blocked between tmin and tmax, by the tree or by the faces `among` of the face list.
+static mask blocked_by(const Scene *scene, Ray ray, FaceRange among, mask active) {
+    mask blocked = NO_LANES;
+    if (OPAL_HAS_face_list && among.faces > 0) blocked = faces_any(scene, ray, among, active);
+    if (!OPAL_HAS_tree) return blocked;
+    TreeRays rays;
+    prepare_rays(&rays, scene, ray, active & !blocked);
+    if (rays.walking == 0) return blocked;
+    return blocked | mask_of(walk_any(scene, &rays));
+}
+
+static mask any_hit(const Scene *scene, Ray ray, mask active) {
+    return blocked_by(scene, ray, scene->settings->face_list, active);
+}
+
+// any_hit for shadow rays. It skips faces that provably cannot occlude a light, such as the scene's outer walls and the
+// only lamp (host: face list).
+static mask any_hit_to_light(const Scene *scene, Ray ray, mask active) {
+    return blocked_by(scene, ray, scene->settings->face_list_to_light, active);
+}
