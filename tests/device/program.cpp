@@ -1,4 +1,5 @@
 // Building and running kernels on the device, and the messages when that fails.
+#include "base/units.h"
 #include "support/kernels.h"
 
 using namespace opal;
