@@ -1,6 +1,7 @@
-// dispatch: the choice of an emitter, a point on it and its radiance, by the kind of each lane's emitter.
+// dispatch: points on emitters, their radiance and density, by the kind of each lane's emitter.
 #include "core/lanes.cl"
 #include "core/rng.cl"
+#include "emitters/choice.cl"
 #include "emitters/interface.cl"
 #include "emitters/list.h"
 #include "emitters/mesh.cl"
@@ -10,18 +11,6 @@
 
 #define COUNT_EMITTER(name) +OPAL_HAS_emitter_##name
 enum { EMITTER_KINDS = 0 OPAL_EMITTERS(COUNT_EMITTER) }; // of this kernel
-
-// Chooses an emitter a lane by two random words (--emitter-choice).
-static uints emitter_choose(const Scene *scene, u2 u) {
-    uints id = (uints)(0);
-    if (OPAL_HAS_many_emitters) ALIAS_ENTRY(scene, emitters, (uints)(0), (uints)(scene->settings->emitter_count), u, id)
-    return id;
-}
-
-// The probability with which emitter_choose returns `id`.
-static real emitter_probability(const Scene *scene, uints id) {
-    return OPAL_HAS_many_emitters ? GATHER(real, scene->emitters, id, .probability) : (real)(1);
-}
 
 // A point on the emitters `id`, by random numbers `point` in [0, 1) and random words `triangle`; zeros in lanes that
 // are not active.

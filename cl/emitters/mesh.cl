@@ -3,6 +3,7 @@
 //   <mesh type="obj"> ... <emitter type="area"> <color name="radiance" value="40 40 40"/> </emitter> </mesh>
 #include "core/lanes.cl"
 #include "core/rng.cl"
+#include "emitters/alias_table.cl"
 #include "emitters/interface.cl"
 #include "scene.cl"
 #include "surface.cl"

@@ -3,7 +3,7 @@
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "core/rng.cl"
-#include "film/film.cl"
+#include "film/sums.cl"
 #include "film/filter.cl"
 #include "scene.cl"
 #include "shared/film.h"

@@ -5,6 +5,7 @@
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "core/rng.cl"
+#include "emitters/choice.cl"
 #include "emitters/dispatch.cl"
 #include "emitters/interface.cl"
 #include "scene.cl"

@@ -1,6 +1,6 @@
-// The features of a kernel: each is compiled in or left out. flatten decides it for a scene. Every feature is always
-// defined as OPAL_HAS_name, 0 or 1, in this order. Device code asks `if (OPAL_HAS_name)`, so that each variant is parsed
-// and type-checked.
+// The features of a kernel: each is compiled in or left out. flatten decides it for a scene. Each feature is always
+// defined as OPAL_HAS_name, 0 or 1, in this order. Device code asks `if (OPAL_HAS_name)`, so that each variant is
+// parsed and type-checked.
 #ifndef OPAL_FEATURES_H
 #define OPAL_FEATURES_H
 

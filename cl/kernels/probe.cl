@@ -1,17 +1,18 @@
 // probe: the functions that rendering uses, one by one, on random numbers, points and rays of the host's choice: what
 // the tests ask is what renders.
 //
-// A work-item carries LANES samples, from index first + item * LANES on. Inputs and outputs are columns (columns.cl) of
-// `stride` floats, a multiple of 16. Drivers compile a kernel for each shape of launch, so that all launches have one:
-// work-items past the end return.
+// A work-item carries LANES samples, from index first + item * LANES on. Inputs and outputs are columns
+// (sample_columns.cl) of `stride` floats, a multiple of 16. Drivers compile a kernel for each shape of launch, so that
+// all launches have one: work-items past the end return.
 #include "bsdfs/dispatch.cl"
 #include "bsdfs/interface.cl"
 #include "core/lanes.cl"
 #include "core/rng.cl"
 #include "core/warp.cl"
+#include "emitters/choice.cl"
 #include "emitters/dispatch.cl"
 #include "emitters/interface.cl"
-#include "kernels/columns.cl"
+#include "kernels/sample_columns.cl"
 #include "kernels/probe_list.h"
 #include "scene.cl"
 #include "shared/types.h"

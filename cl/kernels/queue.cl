@@ -1,5 +1,5 @@
-// queue: the samples of a work-item, and the ones that are finished. one_lane/ and many_lanes/starts.cl start their
-// paths.
+// queue: the samples of a work-item, and the ones that are finished. one_lane/ and many_lanes/path_starts.cl start
+// their paths.
 #include "core/lanes.cl"
 #include "integrators/steps.cl"
 #include "scene.cl"

@@ -1,14 +1,16 @@
 // rays: traversal alone, on rays like those of a render (host/bench/rays.h).
 //
-// Rays and hits are columns (columns.cl) of `stride` floats, a multiple of 16; kernels/rays_list.h names the columns.
+// Rays and hits are columns (sample_columns.cl) of `stride` floats, a multiple of 16; kernels/rays_list.h names the
+// columns.
 #include "camera.cl"
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "core/rng.cl"
 #include "core/warp.cl"
+#include "emitters/choice.cl"
 #include "emitters/dispatch.cl"
 #include "emitters/interface.cl"
-#include "kernels/columns.cl"
+#include "kernels/sample_columns.cl"
 #include "kernels/rays_list.h"
 #include "scene.cl"
 #include "shared/counters.h"

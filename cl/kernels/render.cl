@@ -11,9 +11,9 @@
 #include "shared/types.h"
 #include "trace/trace.cl"
 #if LANES == 1
-#include "kernels/one_lane/starts.cl"
+#include "kernels/one_lane/path_starts.cl"
 #else
-#include "kernels/many_lanes/starts.cl"
+#include "kernels/many_lanes/path_starts.cl"
 #endif
 
 kernel void render(SCENE_PARAMETERS, global float *samples, uint first_item, uint items, uint tile_width,

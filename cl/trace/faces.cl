@@ -5,7 +5,7 @@
 #include "scene.cl"
 #include "shared/types.h"
 #include "trace/rays.cl"
-#include "trace/triangle.cl"
+#include "trace/edge.cl"
 
 // The face list's vertices as all lanes see them, moved to the ray's origin and sheared.
 typedef struct { real x[OPAL_FACE_LIST_VERTICES], y[OPAL_FACE_LIST_VERTICES]; } FaceView;

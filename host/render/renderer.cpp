@@ -123,7 +123,8 @@ void Renderer::restart(unsigned seed, unsigned first_sample) {
         device_.handles->queue.enqueueWriteBuffer(on_device_->scene[0], CL_TRUE, 0, sizeof settings_, &settings_);
         device_.handles->queue.enqueueFillBuffer(on_device_->film, cl_uint(0), 0, pixels_ * FILM_PLANES * 4);
         device_.handles->queue.enqueueFillBuffer(on_device_->counts, cl_uint(0), 0, pixels_ * 4);
-        device_.handles->queue.enqueueFillBuffer(on_device_->invalid, cl_uint(0), 0, (1 + 2 * OPAL_INVALID_RECORDS) * 4);
+        device_.handles->queue.enqueueFillBuffer(on_device_->invalid, cl_uint(0), 0,
+                                                 (1 + 2 * OPAL_INVALID_RECORDS) * 4);
         return device_.handles->queue.finish();
     });
 }
@@ -219,7 +220,8 @@ Film Renderer::film() const {
         for (unsigned c = 0; wide_filter_ && c < 4; c++)
             film.weighted[p][c] = value(FILM_WEIGHTED + c, FILM_WEIGHTED_LOW + c, p);
     }
-    const std::vector<cl_uint> invalid = read_buffer<cl_uint>(device_, on_device_->invalid, 1 + 2 * OPAL_INVALID_RECORDS);
+    const std::vector<cl_uint> invalid =
+        read_buffer<cl_uint>(device_, on_device_->invalid, 1 + 2 * OPAL_INVALID_RECORDS);
     film.invalid = invalid[0];
     for (unsigned i = 0; i < std::min<unsigned>(invalid[0], OPAL_INVALID_RECORDS); i++)
         film.invalid_places.push_back(

@@ -16,7 +16,8 @@ namespace {
 const char *const page_head = R"(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
 <style>
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 1000px; margin: 2em auto; padding: 0 1em; color: #222; background: #fff }
+body { font: 16px/1.5 system-ui, sans-serif; max-width: 1000px; margin: 2em auto; padding: 0 1em }
+body { color: #222; background: #fff }
 h1 { font-size: 1.6em } h2 { margin-top: 2em; font-size: 1.25em }
 .verdict { background: #f3f6fa; border-left: 4px solid #0072b2; padding: .6em 1.2em }
 .verdict li:first-child { font-weight: 600 }
@@ -26,9 +27,11 @@ th:first-child, td:first-child { text-align: left } td small { display: block; c
 .dot { display: inline-block; width: .7em; height: .7em; border-radius: 50%; margin-right: .5em }
 svg { width: 100% }
 .grid { display: grid; grid-template-columns: repeat(auto-fill, minmax(300px, 1fr)); gap: 1em }
-figure { margin: 0 } .lens { overflow: hidden; cursor: zoom-in } .lens img { display: block; width: 100%; image-rendering: pixelated }
+figure { margin: 0 } .lens { overflow: hidden; cursor: zoom-in }
+.lens img { display: block; width: 100%; image-rendering: pixelated }
 figure.large { grid-column: 1 / -1 } figure.large .lens { cursor: zoom-out } .lens + .lens { margin-top: 4px }
-figcaption { font-size: .9em } code, pre { background: #f4f4f4; padding: .1em .3em } pre { padding: .8em; white-space: pre-wrap; overflow-wrap: anywhere }
+figcaption { font-size: .9em } code, pre { background: #f4f4f4; padding: .1em .3em }
+pre { padding: .8em; white-space: pre-wrap; overflow-wrap: anywhere }
 </style>
 )";
 

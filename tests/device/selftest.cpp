@@ -79,12 +79,12 @@ TEST_CASE("The table marks what failed, and the exit code is 1", "[selftest]") {
 
 TEST_CASE("A crash, a hang and kernels that do not build are told", "[selftest]") {
     const char *const output = "columns[column * stride + base + lane] = (float)lanes[lane];";
-    const Outcome crash = selftest_of({"crash", "kernels/columns.cl", output,
+    const Outcome crash = selftest_of({"crash", "kernels/sample_columns.cl", output,
                                        "*(volatile global float *)(8 + get_global_id(0)) = (float)lanes[lane];"},
                                       "warps");
     CHECK(crash.exit_code == 1);
     CHECK_THAT(crash.out, Catch::Contains("warps at 1 precise: crashed (Segmentation fault)"));
-    const Outcome broken = selftest_of({"broken", "kernels/columns.cl", output, "nothing;"}, "warps");
+    const Outcome broken = selftest_of({"broken", "kernels/sample_columns.cl", output, "nothing;"}, "warps");
     CHECK(broken.exit_code == 1);
     CHECK_THAT(broken.out, Catch::Contains("the kernels do not build"));
     const ScratchFolder folder;

@@ -73,7 +73,7 @@ TEST_CASE("What does not survive the extremes is seen by a row", "[quick]") {
              {{"naive 1 - cos^2", "core/warp.cl", "-expm1(log(u.x) / (n + 1))", "1 - exp(log(u.x) / (n + 1))"},
               "numbers",
               0.5},
-             {{"a plain sum of the samples", "film/film.cl", "r.lo = lo - (r.hi - hi);", "r.lo = 0;"},
+             {{"a plain sum of the samples", "film/sums.cl", "r.lo = lo - (r.hi - hi);", "r.lo = 0;"},
               "samples",
               1 << 20}}) {
         extremes::StressRow one = row(c.row);

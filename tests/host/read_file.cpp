@@ -81,10 +81,10 @@ TEST_CASE("A read error of any file that Opal reads ends the command, with the f
     check_fails("compare " + (folder / "image.exr").string() + " " + unreadable, unreadable + reason);
 
     fs::copy(OPAL_SOURCE_DIR "/cl", folder / "cl", fs::copy_options::recursive);
-    fs::remove(folder / "cl/film/film.cl");
-    fs::create_symlink(unreadable, folder / "cl/film/film.cl");
+    fs::remove(folder / "cl/film/sums.cl");
+    fs::create_symlink(unreadable, folder / "cl/film/sums.cl");
     check_fails("inspect " OPAL_SOURCE_DIR "/scenes/cbox_mis.xml --cl --cl-dir " + (folder / "cl").string(),
-                (folder / "cl/film/film.cl").string() + reason);
+                (folder / "cl/film/sums.cl").string() + reason);
 
     fs::create_symlink(unreadable, folder / "sweep.json");
     CHECK(error_of([&] { load_record(folder.path()); }) == (folder / "sweep.json").string() + reason);

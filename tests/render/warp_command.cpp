@@ -47,7 +47,7 @@ TEST_CASE("A wrong density is rejected", "[warp_command][stat]") {
         "cosine hemisphere without the cosine", "core/warp.cl",
         "v3 square_to_cosine_hemisphere(v2 u) { return direction_of(sqrt(1 - u.x), sqrt(u.x)",
         "v3 square_to_cosine_hemisphere(v2 u) { return direction_of(1 - u.x, sqrt(u.x * (2 - u.x))"};
-    const Mutant alias = {"half of all rows keep their index", "emitters/interface.cl",
+    const Mutant alias = {"half of all rows keep their index", "emitters/alias_table.cl",
                           "unit_real((u).y) < GATHER(real, (scene)->table, (first) + row_, .accept)",
                           "(u).y < 0x80000000u"};
     CHECK(warp_of(hemisphere, "cosine_hemisphere") == 1);

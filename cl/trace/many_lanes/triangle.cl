@@ -1,11 +1,11 @@
 // many_lanes/triangle: one ray against the eight triangles of a block, in one vector.
 #include "core/lanes.cl"
 #include "shared/types.h"
-#include "trace/many_lanes/eight.cl"
+#include "trace/many_lanes/eight_wide.cl"
 #include "trace/rays.cl"
-#include "trace/triangle.cl"
+#include "trace/edge.cl"
 
-// As edge() in trace/triangle.cl.
+// As edge() in trace/edge.cl.
 static real8 edge8(real8 ax, real8 ay, real8 bx, real8 by) {
 #pragma OPENCL FP_CONTRACT OFF
     real8 p = ax * by;

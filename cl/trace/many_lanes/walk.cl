@@ -8,7 +8,7 @@
 #include "scene.cl"
 #include "shared/counters.h"
 #include "shared/types.h"
-#include "trace/many_lanes/eight.cl"
+#include "trace/many_lanes/eight_wide.cl"
 #include "trace/many_lanes/triangle.cl"
 #include "trace/rays.cl"
 

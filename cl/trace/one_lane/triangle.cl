@@ -2,7 +2,7 @@
 #include "core/lanes.cl"
 #include "shared/types.h"
 #include "trace/rays.cl"
-#include "trace/triangle.cl"
+#include "trace/edge.cl"
 
 // The intersection of a ray's line with a triangle, as signed sums: t = distance / determinant, and the barycentric
 // weights of corners 1 and 2, b / determinant and c / determinant. They are left undivided because most are never used.

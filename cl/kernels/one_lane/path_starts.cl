@@ -1,5 +1,5 @@
-// one_lane/starts: where a kernel carries one lane, the next path of the queue follows a path that ends. Paths are not
-// started ahead as in many_lanes/starts.cl, where that fills all lanes of a vector.
+// one_lane/path_starts: where a kernel carries one lane, the next path of the queue follows a path that ends. Paths are
+// not started ahead as in many_lanes/path_starts.cl, where that fills all lanes of a vector.
 #include "camera.cl"
 #include "core/lanes.cl"
 #include "core/rng.cl"

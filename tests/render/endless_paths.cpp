@@ -29,7 +29,7 @@ std::string mirror_box() {
 
 } // namespace
 
-TEST_CASE("A path between mirrors ends by roulette", "[endless]") {
+TEST_CASE("A path between mirrors ends by roulette", "[endless_paths]") {
     ScratchFolder folder;
     auto scene = folder.write("mirrors.xml", mirror_box());
     for (const std::string rr : {"throughput", "throughput-eta"}) {

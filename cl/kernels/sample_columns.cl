@@ -1,5 +1,5 @@
-// columns: values of many samples in memory, value `column` of sample i at [column * stride + i], read and written a
-// lane each. Integers are stored by their bits.
+// sample_columns: values of many samples in memory, value `column` of sample i at [column * stride + i], read and
+// written a lane each. Integers are stored by their bits.
 #include "core/lanes.cl"
 
 static real get(global const float *columns, uint column, uint stride, uint base) {

@@ -1,4 +1,4 @@
-// many_lanes/eight: operations on eight numbers of one ray (real8, mask8).
+// many_lanes/eight_wide: operations on eight numbers of one ray (real8, mask8).
 #include "core/lanes.cl"
 
 // Minimum and maximum by one comparison, as minps does it: NaN in a is dropped, NaN in b stays.

@@ -17,8 +17,10 @@ std::vector<std::string> warnings_of(const std::string &camera, const std::strin
     folder.write("dust.obj", "v 0 0 0\nv 1e-15 0 0\nv 0 1e-15 0\nf 1 2 3\n");
     const auto file =
         folder.write("scene.xml", R"(<scene><integrator type="path_mis"/>
-<mesh type="parallelogram"><point name="origin" value="-1 -1 0"/><vector name="u" value="2 0 0"/><vector name="v" value="0 2 0"/></mesh>
-<mesh type="parallelogram"><point name="origin" value="-1 -1 1"/><vector name="u" value="2 0 0"/><vector name="v" value="0 2 0"/>
+<mesh type="parallelogram"><point name="origin" value="-1 -1 0"/><vector name="u" value="2 0 0"/>)"
+                                  R"(<vector name="v" value="0 2 0"/></mesh>
+<mesh type="parallelogram"><point name="origin" value="-1 -1 1"/><vector name="u" value="2 0 0"/>)"
+                                  R"(<vector name="v" value="0 2 0"/>
 )" + more + "\n" + R"(<emitter type="area"><color name="radiance" value="1 1 1"/></emitter></mesh>
 <camera type="perspective"><transform name="toWorld"><lookat origin=")" +
                                       camera + R"(" target="0 0 0" up="0 0 1"/></transform></camera></scene>)");
@@ -39,7 +41,7 @@ void check_one(const std::vector<std::string> &lines, const std::string &start, 
 
 } // namespace
 
-TEST_CASE("An ordinary scene brings no warning", "[sanity]") {
+TEST_CASE("An ordinary scene brings no warning", "[precision_warnings]") {
     CHECK(warnings_of(near, R"(<bsdf type="diffuse"><color name="albedo" value="1 1 1"/></bsdf>)").empty());
     CHECK(warnings_of(near, R"(<bsdf type="microfacet"><float name="alpha" value="1e-4"/></bsdf>)").empty());
     CHECK(warnings_of(near, R"(<bsdf type="phong"><float name="n" value="1e6"/></bsdf>)").empty());
@@ -47,14 +49,12 @@ TEST_CASE("An ordinary scene brings no warning", "[sanity]") {
     CHECK(warnings_of("0 -300 1", "").empty());
 }
 
-TEST_CASE("What makes light from nothing, or nothing of light, is told with its line", "[sanity]") {
+TEST_CASE("What makes light from nothing, or nothing of light, is told with its line", "[precision_warnings]") {
     check_one(warnings_of(near, R"(<bsdf type="diffuse"><color name="albedo" value="0.5 1.1 0.5"/></bsdf>)"),
               "4:", "albedo 1.1 is above 1");
-    check_one(
-        warnings_of(
-            near,
-            R"(<bsdf type="phong"><color name="kd" value="0.9 0.9 0.9"/><color name="ks" value="1.4 1.4 1.4"/></bsdf>)"),
-        "4:", "reflect 1.15");
+    check_one(warnings_of(near, R"(<bsdf type="phong"><color name="kd" value="0.9 0.9 0.9"/>)"
+                                R"(<color name="ks" value="1.4 1.4 1.4"/></bsdf>)"),
+              "4:", "reflect 1.15");
     check_one(
         warnings_of(
             near,
@@ -70,17 +70,16 @@ TEST_CASE("What makes light from nothing, or nothing of light, is told with its 
     CHECK_THAT(dust[1], Catch::StartsWith("scene.xml:4:") && Catch::Contains("no area"));
 }
 
-TEST_CASE("Where single precision does not hold is told with its line", "[sanity]") {
+TEST_CASE("Where single precision does not hold is told with its line", "[precision_warnings]") {
     check_one(warnings_of(near, R"(<bsdf type="microfacet"><float name="alpha" value="1e-7"/></bsdf>)"),
               "4:", "alpha 1e-07");
     check_one(warnings_of(near, R"(<bsdf type="phong"><float name="n" value="1e9"/></bsdf>)"), "4:", "n 1e+09");
     check_one(warnings_of(near, R"(</mesh><mesh type="obj"><string name="filename" value="speck.obj"/>)"),
               "4:", "speck.obj is 5.0e-05 of the scene's size");
-    check_one(
-        warnings_of(
-            near,
-            R"(<emitter type="area"><color name="radiance" value="1e19 1e19 1e19"/></emitter></mesh><mesh type="parallelogram">
+    check_one(warnings_of(near,
+                          R"(<emitter type="area"><color name="radiance" value="1e19 1e19 1e19"/></emitter></mesh>)"
+                          R"(<mesh type="parallelogram">
 <point name="origin" value="-1 -1 0.5"/><vector name="u" value="2 0 0"/><vector name="v" value="0 2 0"/>)"),
-        "3:", "radiance 1.0e+19");
+              "3:", "radiance 1.0e+19");
     check_one(warnings_of("0 -1e5 1", ""), "6:", "5e+04 sizes");
 }

@@ -1,4 +1,4 @@
-// triangle: the edge functions of watertight ray-triangle intersection (Woop, Benthin and Wald 2013, "Watertight
+// edge: the edge function of watertight ray-triangle intersection (Woop, Benthin and Wald 2013, "Watertight
 // Ray/Triangle Intersection"). one_lane/ and many_lanes/ test the tree's triangles by them,
 // faces.cl those of the face list.
 //

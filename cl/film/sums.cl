@@ -1,4 +1,4 @@
-// film: sums of the finished samples of each pixel.
+// sums: the sums over the finished samples of each pixel, in pairs of floats.
 //
 // A pass leaves sample s of pixel p in samples[(p * pass_samples + s) * OPAL_SAMPLE_FLOATS ...]. Samples are added in
 // their order, into sums of two floats (Knuth's two-sum), so that neither the cut into passes nor a million samples

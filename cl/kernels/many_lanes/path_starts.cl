@@ -1,5 +1,5 @@
-// many_lanes/starts: camera paths are started LANES at a time and wait for a lane that ends, because a path that is
-// started for one lane alone leaves the others idle.
+// many_lanes/path_starts: camera paths are started LANES at a time and wait for a lane that ends, because a path that
+// is started for one lane alone leaves the others idle.
 #include "camera.cl"
 #include "core/lanes.cl"
 #include "core/rng.cl"
