@@ -1,5 +1,5 @@
-// alias_table: choosing a row of a table with given probabilities by two random words (Walker 1977, "An Efficient Method
-// for Generating Discrete Random Variables with General Distributions"). The host makes the tables.
+// alias_table: choosing a row of a table with given probabilities by two random words (Walker 1977, "An Efficient
+// Method for Generating Discrete Random Variables with General Distributions"). The host makes the tables.
 #include "core/lanes.cl"
 #include "core/rng.cl"
 #include "emitters/list.h"

@@ -1,8 +1,15 @@
 #include "base/json.h"
 
-#include <nlohmann/json.hpp>
+template class nlohmann::basic_json<>;
 
 namespace opal {
+
+nlohmann::json object(std::initializer_list<JsonMember> members) {
+    nlohmann::json result = nlohmann::json::object();
+    for (const JsonMember &member : members)
+        result[member.key] = member.value;
+    return result;
+}
 
 std::string dump(const nlohmann::json &json, int indent) {
     return json.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);

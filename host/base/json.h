@@ -1,11 +1,24 @@
-// JSON as text.
+// JSON values and their text. Only .cpp files include this, as the library's header is slow to compile; headers include
+// <nlohmann/json_fwd.hpp>.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
+#include <initializer_list>
 #include <string>
 
+extern template class nlohmann::basic_json<>; // compiled once, in json.cpp
+
 namespace opal {
+
+struct JsonMember {
+    const char *key;
+    nlohmann::json value;
+};
+
+// An object: object({{"spp", 4}, {"seed", 1}}). nlohmann's own initialiser list compiles to new code for each length of
+// a key, and makes an array of pairs where it cannot tell.
+nlohmann::json object(std::initializer_list<JsonMember> members);
 
 // Text of a JSON value. Names of files and drivers need not be UTF-8, but JSON must be: bytes that are not become
 // U+FFFD, as in browsers and editors. indent -1: one line.

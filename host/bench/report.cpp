@@ -1,16 +1,16 @@
 #include "bench/report.h"
 
+#include "base/json.h"
 #include "base/units.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace opal {
 
 namespace {
 
 nlohmann::json spread_json(const Spread &s) {
-    return {{"median", s.median}, {"least", s.least}, {"greatest", s.greatest}};
+    return object({{"median", s.median}, {"least", s.least}, {"greatest", s.greatest}});
 }
 
 std::string spread_text(const Spread &s, double unit = 1) {
@@ -41,22 +41,22 @@ std::string BenchSubject::tree_text() const {
 }
 
 nlohmann::json BenchSubject::json() const {
-    return {{"scene", scene.file.string()},
-            {"device", device.info.name},
-            {"driver", device.info.driver},
-            {"lanes", lanes},
-            {"math", name_of(scene.strategy.math)},
-            {"triangles", flat.triangles.size()},
-            {"listed_triangles", flat.face_list_triangles},
-            {"nodes", flat.nodes.size()},
-            {"blocks", flat.blocks.size()},
-            {"hierarchy_bytes", tree_bytes()},
-            {"bytes_per_triangle", bytes_a_triangle()},
-            {"sah_cost", flat.sah_cost},
-            {"build_seconds", flat.bvh_seconds},
-            {"center", {flat.center.x, flat.center.y, flat.center.z}},
-            {"scale", flat.scale},
-            {"version", OPAL_VERSION}};
+    return object({{"scene", scene.file.string()},
+                   {"device", device.info.name},
+                   {"driver", device.info.driver},
+                   {"lanes", lanes},
+                   {"math", name_of(scene.strategy.math)},
+                   {"triangles", flat.triangles.size()},
+                   {"listed_triangles", flat.face_list_triangles},
+                   {"nodes", flat.nodes.size()},
+                   {"blocks", flat.blocks.size()},
+                   {"hierarchy_bytes", tree_bytes()},
+                   {"bytes_per_triangle", bytes_a_triangle()},
+                   {"sah_cost", flat.sah_cost},
+                   {"build_seconds", flat.bvh_seconds},
+                   {"center", {flat.center.x, flat.center.y, flat.center.z}},
+                   {"scale", flat.scale},
+                   {"version", OPAL_VERSION}});
 }
 
 std::string RayFigures::text() const {
@@ -69,14 +69,14 @@ std::string RayFigures::text() const {
 
 nlohmann::json RayFigures::json() const {
     const Spread &rate = times.mrays_per_second;
-    return {{"rays", rays},
-            {"mrays_per_second", rate.median},
-            {"least", rate.least},
-            {"greatest", rate.greatest},
-            {"mrays_per_cpu_second", times.mrays_per_cpu_second.median},
-            {"hit_share", times.hit_share},
-            {"node_tests_per_ray", times.node_tests},
-            {"triangle_tests_per_ray", times.triangle_tests}};
+    return object({{"rays", rays},
+                   {"mrays_per_second", rate.median},
+                   {"least", rate.least},
+                   {"greatest", rate.greatest},
+                   {"mrays_per_cpu_second", times.mrays_per_cpu_second.median},
+                   {"hit_share", times.hit_share},
+                   {"node_tests_per_ray", times.node_tests},
+                   {"triangle_tests_per_ray", times.triangle_tests}});
 }
 
 double RenderFigures::rays_per_second() const {
@@ -93,14 +93,14 @@ std::string RenderFigures::text() const {
 }
 
 nlohmann::json RenderFigures::json() const {
-    return {{"spp", spp},
-            {"paths_per_second", spread_json(rates.paths_per_second)},
-            {"paths_per_cpu_second", spread_json(rates.paths_per_cpu_second)},
-            {"rays_per_path", counts.rays},
-            {"shadow_rays_per_path", counts.shadow_rays},
-            {"rays_per_second", rays_per_second()},
-            {"lanes_busy", counts.lanes_busy},
-            {"compile_seconds", {{"cold", compile_cold}, {"warm", compile_warm}}}};
+    return object({{"spp", spp},
+                   {"paths_per_second", spread_json(rates.paths_per_second)},
+                   {"paths_per_cpu_second", spread_json(rates.paths_per_cpu_second)},
+                   {"rays_per_path", counts.rays},
+                   {"shadow_rays_per_path", counts.shadow_rays},
+                   {"rays_per_second", rays_per_second()},
+                   {"lanes_busy", counts.lanes_busy},
+                   {"compile_seconds", object({{"cold", compile_cold}, {"warm", compile_warm}})}});
 }
 
 std::string RaceFigures::text() const {
@@ -109,10 +109,10 @@ std::string RaceFigures::text() const {
 }
 
 nlohmann::json RaceFigures::json() const {
-    return {{"paths_per_second", spread_json(race.rates.paths_per_second)},
-            {"paths_per_cpu_second", spread_json(race.rates.paths_per_cpu_second)},
-            {"time", spread_json(race.time)},
-            {"compile_seconds", race.compile_seconds}};
+    return object({{"paths_per_second", spread_json(race.rates.paths_per_second)},
+                   {"paths_per_cpu_second", spread_json(race.rates.paths_per_cpu_second)},
+                   {"time", spread_json(race.time)},
+                   {"compile_seconds", race.compile_seconds}});
 }
 
 std::string TimeShares::text() const {
@@ -121,7 +121,7 @@ std::string TimeShares::text() const {
 }
 
 nlohmann::json TimeShares::json() const {
-    return {{"traversal", traversal}, {"sampling", sampling}, {"shading", 1 - traversal - sampling}};
+    return object({{"traversal", traversal}, {"sampling", sampling}, {"shading", 1 - traversal - sampling}});
 }
 
 } // namespace opal

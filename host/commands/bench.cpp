@@ -8,7 +8,6 @@
 #include "image/image.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <bit>
 #include <chrono>

@@ -7,7 +7,6 @@
 #include "image/metrics.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <limits>
 #include <optional>
@@ -78,43 +77,43 @@ void write_map(const std::filesystem::path &exr, const Image &image, const Image
 }
 
 nlohmann::json json_of(const Metrics &m) {
-    return {{"mse", m.mse},
-            {"rmse", m.rmse},
-            {"rel_mse", m.rel_mse},
-            {"rel_mse_denominator", "reference^2 + rel_mse_floor"},
-            {"rel_mse_floor", m.rel_mse_floor},
-            {"mae", m.mae},
-            {"smape", m.smape},
-            {"smape_denominator", "(|image| + |reference|) / 2"},
-            {"psnr_db", m.psnr}, // infinite (equal images) is written as null
-            {"mean_difference", m.mean_difference},
-            {"max_difference", m.max_difference},
-            {"max_x", m.max_x},
-            {"max_y", m.max_y},
-            {"invalid_pixels", m.invalid}};
+    return object({{"mse", m.mse},
+                   {"rmse", m.rmse},
+                   {"rel_mse", m.rel_mse},
+                   {"rel_mse_denominator", "reference^2 + rel_mse_floor"},
+                   {"rel_mse_floor", m.rel_mse_floor},
+                   {"mae", m.mae},
+                   {"smape", m.smape},
+                   {"smape_denominator", "(|image| + |reference|) / 2"},
+                   {"psnr_db", m.psnr}, // infinite (equal images) is written as null
+                   {"mean_difference", m.mean_difference},
+                   {"max_difference", m.max_difference},
+                   {"max_x", m.max_x},
+                   {"max_y", m.max_y},
+                   {"invalid_pixels", m.invalid}});
 }
 
 nlohmann::json json_of(const stats::TileTest &t, double significance) {
-    nlohmann::json j = {{"p_value", t.p_value},
-                        {"significance", significance},
-                        {"differ", t.rejected(significance)},
-                        {"tile_size", t.size},
-                        {"columns", t.columns},
-                        {"rows", t.rows},
-                        {"z", t.z}};
+    nlohmann::json j = object({{"p_value", t.p_value},
+                               {"significance", significance},
+                               {"differ", t.rejected(significance)},
+                               {"tile_size", t.size},
+                               {"columns", t.columns},
+                               {"rows", t.rows},
+                               {"z", t.z}});
     for (const stats::TestResult &whole : t.whole)
         j["whole_image_p"].push_back(whole.p_value);
     const stats::Region &r = t.region;
     if (r.tiles > 0)
-        j["region"] = {{"channel", std::string(1, "RGB"[r.channel])},
-                       {"tiles", r.tiles},
-                       {"x", r.box.x},
-                       {"y", r.box.y},
-                       {"width", r.box.width},
-                       {"height", r.box.height},
-                       {"z", r.statistic},
-                       {"mean_image", r.mean_a},
-                       {"mean_reference", r.mean_b}};
+        j["region"] = object({{"channel", std::string(1, "RGB"[r.channel])},
+                              {"tiles", r.tiles},
+                              {"x", r.box.x},
+                              {"y", r.box.y},
+                              {"width", r.box.width},
+                              {"height", r.box.height},
+                              {"z", r.statistic},
+                              {"mean_image", r.mean_a},
+                              {"mean_reference", r.mean_b}});
     return j;
 }
 
@@ -156,7 +155,7 @@ int run(const Options &o) {
 
     const Metrics metrics = compare_images(image, reference);
     nlohmann::json report = json_of(metrics);
-    report.update({{"image", o.image}, {"reference", o.reference}});
+    report.update(object({{"image", o.image}, {"reference", o.reference}}));
     if (!o.quiet) {
         print_text(text_of(metrics));
         if (metrics.invalid)

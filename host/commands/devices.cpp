@@ -1,10 +1,10 @@
+#include "base/json.h"
 #include "base/log.h"
 #include "base/units.h"
 #include "commands/commands.h"
 #include "device/info_json.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <memory>
 
@@ -66,7 +66,7 @@ int run_devices(const DevicesOptions &options) {
               pick.info.name, pick.reason);
         return 0;
     }
-    print("{}\n", dump({{"devices", devices}, {"pick", pick.info.index}, {"reason", pick.reason}}, 2));
+    print("{}\n", dump(object({{"devices", devices}, {"pick", pick.info.index}, {"reason", pick.reason}}), 2));
     return 0;
 }
 

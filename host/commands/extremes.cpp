@@ -8,7 +8,6 @@
 #include "extremes/report.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace opal {
 
@@ -55,9 +54,13 @@ int run(ExtremesOptions o) {
                      o.settings.side, o.settings.spp, o.settings.seed));
 
     std::vector<extremes::StressResult> results;
-    nlohmann::json report = {{"device", pick.info.name},       {"driver", pick.info.driver}, {"side", o.settings.side},
-                             {"spp", o.settings.spp},          {"seed", o.settings.seed},    {"version", OPAL_VERSION},
-                             {"rows", nlohmann::json::array()}};
+    nlohmann::json report = object({{"device", pick.info.name},
+                                    {"driver", pick.info.driver},
+                                    {"side", o.settings.side},
+                                    {"spp", o.settings.spp},
+                                    {"seed", o.settings.seed},
+                                    {"version", OPAL_VERSION},
+                                    {"rows", nlohmann::json::array()}});
     bool kept = true;
     for (const extremes::StressRow *row : rows) {
         results.push_back(extremes::run_stress(*row, device, o.settings, o.quick ? 3 : 1));

@@ -14,7 +14,6 @@
 #include "sweep/auto.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace opal {
 

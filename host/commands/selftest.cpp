@@ -1,5 +1,6 @@
 // opal selftest: is what this device computes right? Each group of checks runs in a process of its own.
 #include "selftest/selftest.h"
+#include "base/json.h"
 #include "base/log.h"
 #include "base/process.h"
 #include "base/table.h"
@@ -10,7 +11,6 @@
 #include "image/image.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <deque>
@@ -179,22 +179,22 @@ std::string SelftestReport::text() const {
 }
 
 nlohmann::json SelftestReport::json() const {
-    nlohmann::json report = {{"device", device}, {"checks", nlohmann::json::array()}};
+    nlohmann::json report = object({{"device", device}, {"checks", nlohmann::json::array()}});
     for (const Job &job : jobs) {
         const Variant &variant = variants[job.variant];
         for (const Finding &f : job.findings)
-            report["checks"].push_back({{"check", f.check},
-                                        {"lanes", variant.lanes},
-                                        {"math", variant.math},
-                                        {"figure", f.figure},
-                                        {"limit", f.limit},
-                                        {"passed", f.passed}});
+            report["checks"].push_back(object({{"check", f.check},
+                                               {"lanes", variant.lanes},
+                                               {"math", variant.math},
+                                               {"figure", f.figure},
+                                               {"limit", f.limit},
+                                               {"passed", f.passed}}));
         if (!job.problem.empty())
-            report["checks"].push_back({{"check", job.group->name},
-                                        {"lanes", variant.lanes},
-                                        {"math", variant.math},
-                                        {"passed", false},
-                                        {"problem", job.problem}});
+            report["checks"].push_back(object({{"check", job.group->name},
+                                               {"lanes", variant.lanes},
+                                               {"math", variant.math},
+                                               {"passed", false},
+                                               {"problem", job.problem}}));
     }
     return report;
 }
@@ -240,9 +240,9 @@ int run_group(const std::vector<std::string> &words) {
         options.sources = &sources;
         for (const Finding &f : group.run(device, options))
             print("{}{}\n", line_mark,
-                  dump({{"check", f.check}, {"figure", f.figure}, {"limit", f.limit}, {"passed", f.passed}}));
+                  dump(object({{"check", f.check}, {"figure", f.figure}, {"limit", f.limit}, {"passed", f.passed}})));
     } catch (const std::exception &error) {
-        print("{}{}\n", line_mark, dump({{"problem", error.what()}}));
+        print("{}{}\n", line_mark, dump(object({{"problem", error.what()}})));
     }
     return 0;
 }

@@ -15,7 +15,6 @@
 #include "sweep/run.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <iterator>

@@ -9,7 +9,6 @@
 #include "scene/options.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace opal {
 
@@ -34,15 +33,15 @@ std::string text_of(const ConformanceCase &c) {
 }
 
 nlohmann::json json_of(const ConformanceCase &c) {
-    nlohmann::json json = {{"name", c.name},
-                           {"passed", c.passed},
-                           {"samples", c.samples},
-                           {"p_value", c.result.p_value},
-                           {"statistic", c.result.statistic},
-                           {"dof", c.result.dof},
-                           {"reason", c.result.reason}};
+    nlohmann::json json = object({{"name", c.name},
+                                  {"passed", c.passed},
+                                  {"samples", c.samples},
+                                  {"p_value", c.result.p_value},
+                                  {"statistic", c.result.statistic},
+                                  {"dof", c.result.dof},
+                                  {"reason", c.result.reason}});
     if (c.is_mean)
-        json.update({{"mean", c.mean}, {"reference", c.reference}, {"standard_error", c.standard_error}});
+        json.update(object({{"mean", c.mean}, {"reference", c.reference}, {"standard_error", c.standard_error}}));
     return json;
 }
 
@@ -81,8 +80,10 @@ int run(const Options &o) {
             cases++;
             rejected += !c.passed;
         }
-        report["tests"].push_back(
-            {{"file", o.files[i]}, {"type", test.type}, {"significance", test.significance_level}, {"cases", results}});
+        report["tests"].push_back(object({{"file", o.files[i]},
+                                          {"type", test.type},
+                                          {"significance", test.significance_level},
+                                          {"cases", results}}));
     }
     print("{} of {} cases passed\n", cases - rejected, cases);
     if (!o.json.empty())

@@ -11,7 +11,6 @@
 #include "render/renderer.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace opal {
 
@@ -163,13 +162,13 @@ int run(const Options &o) {
 
     const Agreement agreement = test_agreement(renders, o.significance);
     nlohmann::json report = json_of(agreement, renders);
-    report.update({{"scene", scene.file.string()},
-                   {"device", pick.info.name},
-                   {"driver", pick.info.driver},
-                   {"seed", o.seed},
-                   {"width", scene.camera.width},
-                   {"height", scene.camera.height},
-                   {"budget", o.budget}});
+    report.update(object({{"scene", scene.file.string()},
+                          {"device", pick.info.name},
+                          {"driver", pick.info.driver},
+                          {"seed", o.seed},
+                          {"width", scene.camera.width},
+                          {"height", scene.camera.height},
+                          {"budget", o.budget}}));
     print_text(text_of(agreement, renders));
     if (!agreement.holds() || !o.out.empty())
         leave_evidence(folder, agreement, renders, report);

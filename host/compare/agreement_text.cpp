@@ -1,8 +1,8 @@
 // An Agreement as text and as JSON.
+#include "base/json.h"
 #include "compare/agreement.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
@@ -74,18 +74,18 @@ nlohmann::json json_of(const Agreement &agreement, const std::vector<StrategyRen
         {"power", agreement.power},
         {"detectable_bias", *std::max_element(agreement.detectable.begin(), agreement.detectable.end())}};
     for (size_t i = 0; i < renders.size(); i++)
-        j["strategies"].push_back({{"name", renders[i].how.name},
-                                   {"spp", renders[i].samples},
-                                   {"seconds", renders[i].seconds},
-                                   {"invalid_samples", renders[i].invalid},
-                                   {"detectable_bias", agreement.detectable[i]}});
+        j["strategies"].push_back(object({{"name", renders[i].how.name},
+                                          {"spp", renders[i].samples},
+                                          {"seconds", renders[i].seconds},
+                                          {"invalid_samples", renders[i].invalid},
+                                          {"detectable_bias", agreement.detectable[i]}}));
     for (const PairTest &pair : agreement.pairs)
-        j["pairs"].push_back({{"a", pair.a},
-                              {"b", pair.b},
-                              {"p_value", pair.test.p_value},
-                              {"worst_z", pair.test.worst_z},
-                              {"disagrees", agreement.is_rejected(pair)},
-                              {"detectable_bias", pair.detectable}});
+        j["pairs"].push_back(object({{"a", pair.a},
+                                     {"b", pair.b},
+                                     {"p_value", pair.test.p_value},
+                                     {"worst_z", pair.test.worst_z},
+                                     {"disagrees", agreement.is_rejected(pair)},
+                                     {"detectable_bias", pair.detectable}}));
     return j;
 }
 

@@ -1,5 +1,6 @@
 #include "device/ask_driver.h"
 
+#include "base/json.h"
 #include "base/log.h"
 #include "base/process.h"
 #include "base/read_file.h"
@@ -7,7 +8,6 @@
 #include "device/load_driver.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,6 +1,6 @@
 #include "device/info_json.h"
 
-#include <nlohmann/json.hpp>
+#include "base/json.h"
 
 namespace opal {
 

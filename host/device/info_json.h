@@ -1,8 +1,8 @@
 // DeviceInfo as JSON: what a probe says to the process that started it, and what `opal devices --json` prints.
 #pragma once
 
-#include "base/json.h"
 #include "device/context.h"
+#include <nlohmann/json_fwd.hpp>
 
 namespace opal {
 

@@ -1,7 +1,8 @@
 #include "extremes/report.h"
 
+#include "base/json.h"
+
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -109,19 +110,19 @@ nlohmann::json json_of(const StressResult &s) {
         {"correct_to", s.to},     {"promised_from", s.row->promised_from}, {"promised_to", s.row->promised_to},
         {"promise_kept", s.kept}, {"breaking_point", breaking_point(s)},   {"points", nlohmann::json::array()}};
     for (const StressPoint &p : s.points)
-        j["points"].push_back({{"value", p.value},
-                               {"single", p.single},
-                               {"double", p.oracle},
-                               {"error", p.error},
-                               {"paired_noise", p.paired_noise},
-                               {"noise", p.noise},
-                               {"single_truth_error", number(p.single_truth)},
-                               {"double_truth_error", number(p.oracle_truth)},
-                               {"leaks", number(p.leaks)},
-                               {"self_shadows", number(p.shadows)},
-                               {"invalid_single", p.invalid_single},
-                               {"invalid_double", p.invalid_oracle},
-                               {"fault", p.fault}});
+        j["points"].push_back(object({{"value", p.value},
+                                      {"single", p.single},
+                                      {"double", p.oracle},
+                                      {"error", p.error},
+                                      {"paired_noise", p.paired_noise},
+                                      {"noise", p.noise},
+                                      {"single_truth_error", number(p.single_truth)},
+                                      {"double_truth_error", number(p.oracle_truth)},
+                                      {"leaks", number(p.leaks)},
+                                      {"self_shadows", number(p.shadows)},
+                                      {"invalid_single", p.invalid_single},
+                                      {"invalid_double", p.invalid_oracle},
+                                      {"fault", p.fault}}));
     return j;
 }
 

@@ -7,7 +7,6 @@
 #include "stats/special.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 
@@ -24,7 +23,7 @@ double samples_per_second(const FilmStatistics &s, const RenderSeconds &seconds)
 } // namespace
 
 json strategy_json(const SceneDescription &scene) {
-    json j = {{"integrator", scene.integrator_type}};
+    json j = object({{"integrator", scene.integrator_type}});
     for (const StrategyOption &option : strategy_options()) {
         if (option.name == "lanes") // the report has its own key, the number that was used
             continue;
@@ -72,13 +71,13 @@ nlohmann::json RenderReport::json() const {
     j["invalid_samples"] = s.invalid;
     j["invalid_places"] = nlohmann::json::array();
     for (const InvalidSample &p : film.invalid_places)
-        j["invalid_places"].push_back({{"x", p.x}, {"y", p.y}, {"sample", p.sample}});
+        j["invalid_places"].push_back(object({{"x", p.x}, {"y", p.y}, {"sample", p.sample}}));
     j["samples_per_second"] = samples_per_second(s, seconds);
-    j["seconds"] = {{"load", seconds.load},
-                    {"bvh", seconds.bvh},
-                    {"compile", seconds.compile},
-                    {"render", seconds.render},
-                    {"write", seconds.write}};
+    j["seconds"] = object({{"load", seconds.load},
+                           {"bvh", seconds.bvh},
+                           {"compile", seconds.compile},
+                           {"render", seconds.render},
+                           {"write", seconds.write}});
     j["warnings"] = warnings();
     j["version"] = OPAL_VERSION;
     return j;
@@ -120,16 +119,16 @@ std::string StopReport::warning() const {
 
 nlohmann::json StopReport::json() const {
     const bool by_time = rule.seconds > 0;
-    nlohmann::json j = {{"rule", by_time ? "time" : "target-error"},
-                        {"target", by_time ? rule.seconds : rule.relative_error},
-                        {"reached", by_time ? seconds : relative_error},
-                        {"relative_error", relative_error},
-                        {"confidence", confidence},
-                        {"mean_luminance_interval", nullptr}};
+    nlohmann::json j = object({{"rule", by_time ? "time" : "target-error"},
+                               {"target", by_time ? rule.seconds : rule.relative_error},
+                               {"reached", by_time ? seconds : relative_error},
+                               {"relative_error", relative_error},
+                               {"confidence", confidence},
+                               {"mean_luminance_interval", nullptr}});
     if (interval)
         j["mean_luminance_interval"] = *interval;
     if (!by_time)
-        j.update({{"met", met}, {"pilot_spp", stopped.pilot_spp}, {"pilot_seconds", stopped.pilot_seconds}});
+        j.update(object({{"met", met}, {"pilot_spp", stopped.pilot_spp}, {"pilot_seconds", stopped.pilot_seconds}}));
     return j;
 }
 

@@ -1,9 +1,9 @@
 #include "sweep/analysis.h"
 
+#include "base/json.h"
 #include "stats/hypothesis.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -124,20 +124,20 @@ nlohmann::json json_of(const SweepSummary &summary) {
     const auto interval = [](const stats::Interval &i) { return nlohmann::json{i.estimate, i.low, i.high}; };
     nlohmann::json list = nlohmann::json::array();
     for (const StrategySummary &s : summary.strategies) {
-        nlohmann::json j = {{"name", s.record->name},
-                            {"slope", interval(s.slope)},
-                            {"seconds_to_rel_mse_1_percent", interval(s.time_to(0.01))},
-                            {"time_relative_to_best", interval(s.relative_time)},
-                            {"efficiency_relative_to_first", interval(s.efficiency)},
-                            {"rel_mse_efficiency_relative_to_first", interval(s.rel_efficiency)},
-                            {"bias", s.bias},
-                            {"bias_p", s.bias_p}};
+        nlohmann::json j = object({{"name", s.record->name},
+                                   {"slope", interval(s.slope)},
+                                   {"seconds_to_rel_mse_1_percent", interval(s.time_to(0.01))},
+                                   {"time_relative_to_best", interval(s.relative_time)},
+                                   {"efficiency_relative_to_first", interval(s.efficiency)},
+                                   {"rel_mse_efficiency_relative_to_first", interval(s.rel_efficiency)},
+                                   {"bias", s.bias},
+                                   {"bias_p", s.bias_p}});
         for (const PointSummary &p : s.points)
-            j["points"].push_back({{"spp", p.spp},
-                                   {"replicates", p.replicates},
-                                   {"seconds", p.seconds},
-                                   {"mse", interval(p.mse)},
-                                   {"rel_mse", interval(p.rel_mse)}});
+            j["points"].push_back(object({{"spp", p.spp},
+                                          {"replicates", p.replicates},
+                                          {"seconds", p.seconds},
+                                          {"mse", interval(p.mse)},
+                                          {"rel_mse", interval(p.rel_mse)}}));
         list.push_back(j);
     }
     return list;

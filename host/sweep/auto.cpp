@@ -1,7 +1,8 @@
 #include "sweep/auto.h"
 
+#include "base/json.h"
+
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
@@ -36,10 +37,10 @@ std::string AutoChoice::text() const {
 }
 
 nlohmann::json AutoChoice::json() const {
-    nlohmann::json j = {{"chosen", candidates[chosen].name}, {"candidates", nlohmann::json::array()}};
+    nlohmann::json j = object({{"chosen", candidates[chosen].name}, {"candidates", nlohmann::json::array()}});
     for (const Row &row : candidates)
         j["candidates"].push_back(
-            {{"strategy", row.name}, {"relative_cost", row.relative_cost}, {"pilot_spp", row.pilot_spp}});
+            object({{"strategy", row.name}, {"relative_cost", row.relative_cost}, {"pilot_spp", row.pilot_spp}}));
     return j;
 }
 

@@ -6,7 +6,6 @@
 #include "image/image.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace opal {
 
