@@ -1,7 +1,5 @@
 #include "base/json.h"
 
-template class nlohmann::basic_json<>;
-
 namespace opal {
 
 nlohmann::json object(std::initializer_list<JsonMember> members) {

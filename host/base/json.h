@@ -7,8 +7,6 @@
 #include <initializer_list>
 #include <string>
 
-extern template class nlohmann::basic_json<>; // compiled once, in json.cpp
-
 namespace opal {
 
 struct JsonMember {
