@@ -13,4 +13,6 @@ std::string dump(const nlohmann::json &json, int indent) {
     return json.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+nlohmann::json parse_json(const std::string &text) { return nlohmann::json::parse(text); }
+
 } // namespace opal

@@ -22,4 +22,7 @@ nlohmann::json object(std::initializer_list<JsonMember> members);
 // U+FFFD, as in browsers and editors. indent -1: one line.
 std::string dump(const nlohmann::json &json, int indent = -1);
 
+// The value of a text. Throws nlohmann::json::exception where it is no JSON.
+nlohmann::json parse_json(const std::string &text);
+
 } // namespace opal

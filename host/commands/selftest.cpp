@@ -63,7 +63,7 @@ void finish(Job &job, ChildProcess &process, ChildProcess::Clock::time_point dea
     std::istringstream lines(process.said());
     for (std::string line; std::getline(lines, line);)
         if (line.starts_with(line_mark)) {
-            const nlohmann::json json = nlohmann::json::parse(line.substr(line_mark.size()));
+            const nlohmann::json json = parse_json(line.substr(line_mark.size()));
             if (json.contains("problem"))
                 job.problem = json["problem"];
             else
@@ -230,7 +230,7 @@ int run_group(const std::vector<std::string> &words) {
         throw Error("selftest-group is started by opal selftest");
     const CheckGroup &group = find_row(check_groups(), "group", words[0]);
     try {
-        const Device device = open_device(nlohmann::json::parse(words[1]).get<DeviceInfo>());
+        const Device device = open_device(parse_json(words[1]).get<DeviceInfo>());
         const Sources sources = load_sources(words.size() < 7 ? "" : words[6]);
         SelftestOptions options;
         options.build.lanes = std::stoi(words[2]);

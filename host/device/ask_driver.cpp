@@ -66,7 +66,7 @@ std::vector<DeviceInfo> finish_probe(Probe &probe, ChildProcess::Clock::time_poi
     std::istringstream lines(probe.process->said());
     for (std::string line; std::getline(lines, line);)
         if (line.starts_with(line_mark)) {
-            devices.push_back(nlohmann::json::parse(line.substr(line_mark.size())).get<DeviceInfo>());
+            devices.push_back(parse_json(line.substr(line_mark.size())).get<DeviceInfo>());
             if (devices.back().platform.empty())
                 devices.back().platform = probe.driver.name;
         }

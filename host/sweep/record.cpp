@@ -35,7 +35,7 @@ StrategyRecord &SweepRecord::strategy(const std::string &name, const std::string
 SweepRecord load_record(const std::filesystem::path &folder) {
     const std::filesystem::path file = folder / "sweep.json";
     try {
-        return nlohmann::json::parse(read_file(file)).get<SweepRecord>();
+        return parse_json(read_file(file)).get<SweepRecord>();
     } catch (const nlohmann::json::exception &error) {
         throw Error(fmt::format("{}: is no sweep that could be continued ({}); give another folder with -o",
                                 file.string(), error.what()));
@@ -47,7 +47,7 @@ SweepRecord resume(const std::filesystem::path &folder, const SweepRecord &fresh
     if (!std::filesystem::exists(file))
         return fresh;
     SweepRecord kept = load_record(folder);
-    const nlohmann::json was = kept, is = nlohmann::json::parse(dump(fresh)); // as load_record would return it
+    const nlohmann::json was = kept, is = parse_json(dump(fresh)); // as load_record would return it
     for (const char *key :
          {"version", "scene_hash", "integrator", "devices", "clock", "width", "height", "reference_file"})
         if (was[key] != is[key])
