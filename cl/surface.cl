@@ -23,15 +23,17 @@ static uints word_of_slot(uints slot) {
 
 // Corner `corner` of the triangles in `slot`.
 static v3 triangle_vertex(const Scene *scene, uints slot, uint corner) {
+    // A pointer to floats: beyond the first block the words lie past the row, where no array may be indexed.
+    global const float *first = scene->blocks->vertex[corner][0];
     uints word = word_of_slot(slot);
-    return v3_of(GATHER_WORD(real, scene->blocks->vertex[corner][0], word),
-                 GATHER_WORD(real, scene->blocks->vertex[corner][1], word),
-                 GATHER_WORD(real, scene->blocks->vertex[corner][2], word));
+    return v3_of(GATHER_WORD(real, first, word), GATHER_WORD(real, (first + OPAL_WIDTH), word),
+                 GATHER_WORD(real, (first + 2 * OPAL_WIDTH), word));
 }
 
 // Index of the triangles in `slot`.
 static uints triangle_id(const Scene *scene, uints slot) {
-    return GATHER_WORD(uints, scene->blocks->id, word_of_slot(slot));
+    global const uint *first = scene->blocks->id;
+    return GATHER_WORD(uints, first, word_of_slot(slot));
 }
 
 static v3 vertex_normal(const Scene *scene, uints index) {
