@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "commands/commands.h"
 #include "commands/options.h"
+#include "plot/svg.h"
 #include "render/report.h"
 #include "sweep/convergence_plot.h"
 #include "sweep/page.h"

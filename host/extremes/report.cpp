@@ -1,6 +1,7 @@
 #include "extremes/report.h"
 
 #include "base/json.h"
+#include "plot/svg.h"
 
 #include <fmt/format.h>
 
@@ -38,22 +39,22 @@ double x_of(size_t i, size_t count) {
 }
 // The vertical pixel of an error, on a logarithmic scale.
 double y_of(double error) {
-    const double t =
-        std::log10(std::clamp(std::isfinite(error) ? error : max_error, min_error, max_error) / min_error) /
-        std::log10(max_error / min_error);
-    return top + (height - top - bottom) * (1 - t);
+    const LogAxis axis = {std::log10(min_error), std::log10(max_error), height - bottom, top};
+    return axis(std::clamp(std::isfinite(error) ? error : max_error, min_error, max_error));
 }
 
 std::string axes_of(const StressResult &s) {
     std::string svg;
-    for (int e = -8; e <= 0; e += 2)
-        svg += fmt::format("<line x1='{0}' x2='{1}' y1='{2:.1f}' y2='{2:.1f}' stroke='#dddddd'/><text x='{3}' "
-                           "y='{4:.1f}' text-anchor='end'>1e{5}</text>\n",
-                           left, width - right, y_of(std::pow(10.0, e)), left - 4, y_of(std::pow(10.0, e)) + 3, e);
-    for (size_t i = 0; i < s.points.size(); i++)
-        svg += fmt::format(
-            "<text x='{0:.1f}' y='{1}' text-anchor='end' transform='rotate(-40 {0:.1f} {1})'>{2:.6g}</text>\n",
-            x_of(i, s.points.size()), height - bottom + 12, s.points[i].value);
+    for (int e = -8; e <= 0; e += 2) {
+        const double y = y_of(std::pow(10.0, e));
+        svg += svg_line(left, y, width - right, y, "stroke='#dddddd'");
+        svg += svg_text(left - 4, y + 3, "text-anchor='end'", fmt::format("1e{}", e));
+    }
+    for (size_t i = 0; i < s.points.size(); i++) {
+        const double x = x_of(i, s.points.size()), y = height - bottom + 12;
+        svg += svg_text(x, y, fmt::format("text-anchor='end' transform='rotate(-40 {:.1f} {})'", x, y),
+                        fmt::format("{:.6g}", s.points[i].value));
+    }
     return svg;
 }
 

@@ -1,5 +1,7 @@
 #include "sweep/convergence_plot.h"
 
+#include "plot/svg.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -19,24 +21,10 @@ svg:not(:has(.strategy:hover)) .strategy { opacity: 1 }
 </style>
 )";
 
-// A logarithmic axis from decades [low, high] to pixels [from, to].
-struct LogAxis {
-    double low, high, from, to;
-    double operator()(double value) const { return from + (to - from) * (std::log10(value) - low) / (high - low); }
-};
-
 // The axis over [least, most], widened to multiples of half a decade.
 LogAxis axis_of(double least, double most, double from, double to) {
     const double low = std::floor(std::log10(least) * 2 - 0.1) / 2, high = std::ceil(std::log10(most) * 2 + 0.1) / 2;
     return {low, high, from, to};
-}
-
-std::string line(double x0, double y0, double x1, double y1, const std::string &attributes) {
-    return fmt::format("<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' {}/>\n", x0, y0, x1, y1, attributes);
-}
-
-std::string text(double x, double y, const std::string &attributes, const std::string &words) {
-    return fmt::format("<text x='{:.1f}' y='{:.1f}' {}>{}</text>\n", x, y, attributes, html_text(words));
 }
 
 std::string grid(const LogAxis &x, const LogAxis &y) {
@@ -50,19 +38,20 @@ std::string grid(const LogAxis &x, const LogAxis &y) {
                 if (std::log10(value) < a.low - 1e-9 || std::log10(value) > a.high + 1e-9)
                     continue;
                 const std::string style = digit == 1 ? "class='decade'" : "class='minor'";
-                svg += horizontal ? line(pixel, top, pixel, height - bottom, style)
-                                  : line(left, pixel, width - right, pixel, style);
+                svg += horizontal ? svg_line(pixel, top, pixel, height - bottom, style)
+                                  : svg_line(left, pixel, width - right, pixel, style);
                 if (digit == 1 || label_all)
-                    svg += horizontal
-                               ? text(pixel, height - bottom + 18, "text-anchor='middle'", fmt::format("{:g}", value))
-                               : text(left - 8, pixel + 4, "text-anchor='end'", fmt::format("{:g} %", 100 * value));
+                    svg +=
+                        horizontal
+                            ? svg_text(pixel, height - bottom + 18, "text-anchor='middle'", fmt::format("{:g}", value))
+                            : svg_text(left - 8, pixel + 4, "text-anchor='end'", fmt::format("{:g} %", 100 * value));
             }
     }
-    svg += text((left + width - right) / 2, height - 14, "text-anchor='middle'", "time, seconds (fewer is better)");
-    return svg + text(0, 0,
-                      fmt::format("text-anchor='middle' transform='translate(18 {}) rotate(-90)'",
-                                  (top + height - bottom) / 2),
-                      "relative mean squared error (less is better)");
+    svg += svg_text((left + width - right) / 2, height - 14, "text-anchor='middle'", "time, seconds (fewer is better)");
+    return svg + svg_text(0, 0,
+                          fmt::format("text-anchor='middle' transform='translate(18 {}) rotate(-90)'",
+                                      (top + height - bottom) / 2),
+                          "relative mean squared error (less is better)");
 }
 
 std::string curve(const StrategySummary &s, const std::string &color, const LogAxis &x, const LogAxis &y) {
@@ -74,8 +63,9 @@ std::string curve(const StrategySummary &s, const std::string &color, const LogA
         path += fmt::format("{}{:.1f} {:.1f} ", path.empty() ? "M" : "L", px, py);
         const double low = std::fmax(p.rel_mse.low, std::pow(10, y.low)),
                      high = std::fmin(p.rel_mse.high, std::pow(10, y.high));
-        marks += line(px, y(low), px, y(high), "class='bar'") + line(px - 4, y(low), px + 4, y(low), "class='bar'") +
-                 line(px - 4, y(high), px + 4, y(high), "class='bar'");
+        marks += svg_line(px, y(low), px, y(high), "class='bar'") +
+                 svg_line(px - 4, y(low), px + 4, y(low), "class='bar'") +
+                 svg_line(px - 4, y(high), px + 4, y(high), "class='bar'");
         marks +=
             fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='4.5' fill='{}'><title>{}\n{} samples per pixel, {:.3g} "
                         "s\nrelMSE {:.3g} % "
@@ -88,30 +78,11 @@ std::string curve(const StrategySummary &s, const std::string &color, const LogA
 
 } // namespace
 
-std::string html_text(const std::string &plain) {
-    std::string out;
-    for (char c : plain)
-        out += c == '&'    ? "&amp;"
-               : c == '<'  ? "&lt;"
-               : c == '>'  ? "&gt;"
-               : c == '"'  ? "&quot;"
-               : c == '\'' ? "&#39;"
-                           : std::string(1, c);
-    return out;
-}
-
 // The colours of Okabe and Ito, which colour-blind people can tell apart, then darker ones.
 std::string strategy_color(size_t index) {
     static const char *const colors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9",
                                          "#555555", "#7b3294", "#8c510a", "#1b7837", "#b2182b", "#01665e"};
     return colors[index % std::size(colors)];
-}
-
-std::string svg_file(std::string svg) {
-    const std::string tag = "<svg ";
-    if (svg.starts_with(tag))
-        svg.replace(0, tag.size(), "<svg xmlns='http://www.w3.org/2000/svg' style='background: white' ");
-    return svg;
 }
 
 std::string convergence_plot(const SweepSummary &summary) {
@@ -133,7 +104,7 @@ std::string convergence_plot(const SweepSummary &summary) {
         const std::string color = strategy_color(i);
         svg += fmt::format("<g class='strategy' stroke='{}'>\n", color) + curve(summary.strategies[i], color, x, y);
         svg += fmt::format("<circle cx='{}' cy='{}' r='4.5' fill='{}'/>", width - right + 16, legend - 4, color);
-        svg += text(width - right + 28, legend, "stroke='none'", summary.strategies[i].record->label) + "</g>\n";
+        svg += svg_text(width - right + 28, legend, "stroke='none'", summary.strategies[i].record->label) + "</g>\n";
     }
     return svg + "</svg>\n";
 }

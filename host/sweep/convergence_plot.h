@@ -5,12 +5,9 @@
 
 namespace opal {
 
-std::string strategy_color(size_t index);        // CSS colour of the summary's strategy `index`
-std::string html_text(const std::string &plain); // escapes &, <, > and quotes
+std::string strategy_color(size_t index); // CSS colour of the summary's strategy `index`
 
 // relMSE against seconds on logarithmic axes: one line for each strategy, one point with its interval for each spp.
 std::string convergence_plot(const SweepSummary &summary);
-// Makes a stand-alone SVG file of an SVG element for a page.
-std::string svg_file(std::string svg);
 
 } // namespace opal

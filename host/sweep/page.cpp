@@ -2,6 +2,7 @@
 
 #include "base/base64.h"
 #include "base/read_file.h"
+#include "plot/svg.h"
 #include "sweep/convergence_plot.h"
 
 #include <fmt/format.h>
