@@ -6,9 +6,7 @@
 
 namespace opal {
 
-double LogAxis::operator()(double value) const {
-    return from + (to - from) * (std::log10(value) - low) / (high - low);
-}
+double LogAxis::operator()(double value) const { return from + (to - from) * (std::log10(value) - low) / (high - low); }
 
 std::string svg_line(double x0, double y0, double x1, double y1, const std::string &attributes) {
     return fmt::format("<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' {}/>\n", x0, y0, x1, y1, attributes);
