@@ -117,7 +117,7 @@ RaySet RayBench::generate(int kind, size_t count, unsigned seed) {
     return set;
 }
 
-// Rays on the device, where their hits go, and how they are dealt to work-items.
+// Rays on the device, the buffer for their hits, and their distribution to work-items.
 struct RayBench::Batch {
     const char *kernel;
     size_t count, stride, items, rays_an_item;
@@ -152,8 +152,8 @@ RayTimes RayBench::time(const RaySet &set, int runs) {
     batch.kernel = set.kind == RAYS_shadow ? "any_hits" : "closest_hits";
     batch.count = count;
     batch.stride = round_up(count, 16);
-    // One shape for all sets of a CPU, as drivers compile a kernel anew for each; about a thousand rays an item keep
-    // its price small.
+    // One shape of launch for all sets of rays, as drivers compile a kernel for each shape. A thousand rays an item
+    // keep the cost of an item small.
     const bool gpu = device_.info.type == "gpu";
     batch.rays_an_item = gpu ? lanes : round_up((count + 1023) / 1024, lanes);
     batch.items = gpu ? round_up((count + lanes - 1) / lanes, group_size(device_.info)) : 1024;

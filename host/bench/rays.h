@@ -1,4 +1,4 @@
-// Rays alone: what `opal bench rays` times. The device makes rays as a render sends them (cl/kernels/rays.cl) and
+// Ray tracing alone (`opal bench rays`). The device makes rays as a render sends them (cl/kernels/rays.cl) and
 // traces them with the traversal that renders.
 #pragma once
 
@@ -36,7 +36,7 @@ struct RayHit {
 
 struct RayTimes {
     Spread mrays_per_second,
-        mrays_per_cpu_second; // the latter of this process's time on all cores: steady where others work, too
+        mrays_per_cpu_second; // by the CPU time of this process, which is steady on a shared machine
     std::vector<RayHit> hits;
     double hit_share = 0;
     double node_tests = 0, triangle_tests = 0; // a ray: nodes of 8 children; places of blocks, and listed triangles
@@ -48,10 +48,10 @@ public:
     RayBench(const Device &device, const FlatScene &scene, const BuildOptions &build, const Sources &sources);
     ~RayBench();
 
-    // About `count` rays are tried, a pixel each; those that start nowhere are left out.
+    // Makes about `count` rays, one a pixel. Rays without a start are left out.
     RaySet generate(int kind, size_t count, unsigned seed);
 
-    // Closest hits, of shadow rays any: once to warm up, then `runs` times.
+    // Traces closest hits, or any hits for shadow rays: once to warm up, then `runs` times.
     RayTimes time(const RaySet &set, int runs);
 
     double compile_seconds() const { return compile_seconds_; }
@@ -73,7 +73,7 @@ private:
     std::unique_ptr<OnDevice> on_device_;
 };
 
-// Triangle i of FlatScene::triangles: its corners, in flattened units.
+// The corners of FlatScene::triangles, in flattened units.
 std::vector<std::array<float, 9>> triangles_of(const FlatScene &scene);
 
 } // namespace opal

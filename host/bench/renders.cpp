@@ -50,8 +50,7 @@ PathCounts RenderBench::counts() const {
     BuildOptions counting = build_;
     counting.count_tests = true;
     Renderer renderer = renderer_of(scene_, counting);
-    const unsigned spp =
-        std::min(spp_, 64u); // as many as keep a work-item's lanes full as in the renders that are timed
+    const unsigned spp = std::min(spp_, 64u); // enough to keep lanes as full as in the timed renders
     renderer.render(spp);
     const Film film = renderer.film();
     double sum[3] = {};
@@ -79,7 +78,7 @@ FlatScene with_feature(const FlatScene &scene, unsigned feature) {
     FlatScene changed = scene;
     changed.features.list[feature].on = true;
     if (changed.nodes.empty())
-        changed.nodes.push_back(empty_node()); // where there was no tree
+        changed.nodes.push_back(empty_node()); // the scene has no tree
     return changed;
 }
 

@@ -1,4 +1,4 @@
-// Whole renders against each other: what `opal bench render` and `opal inspect --bench` time.
+// Whole renders, timed against each other (`opal bench render`, `opal inspect --bench`).
 #pragma once
 
 #include "bench/rays.h"
@@ -10,7 +10,7 @@ struct PathRates {
     Spread paths_per_second, paths_per_cpu_second;
 };
 
-// What a path takes on average.
+// Averages over paths.
 struct PathCounts {
     double rays = 0, shadow_rays = 0;
     double lanes_busy = 0; // of a round's lanes, the share that traces a ray
@@ -52,7 +52,7 @@ private:
     int rounds_;
 };
 
-// The scene for a kernel that has this feature (FEATURE_*), though the scene does not need it.
+// The scene with a feature (FEATURE_*) compiled in that it does not need.
 FlatScene with_feature(const FlatScene &scene, unsigned feature);
 
 } // namespace opal

@@ -1,4 +1,4 @@
-// What `opal bench` tells, for people and as JSON.
+// Reports of `opal bench`, as text and as JSON.
 #pragma once
 
 #include "bench/renders.h"
@@ -8,7 +8,7 @@
 
 namespace opal {
 
-// What the rates belong to: a scene's tree on a device.
+// The subject of the rates: a scene's tree on a device.
 struct BenchSubject {
     const SceneDescription &scene;
     const FlatScene &flat;
@@ -49,7 +49,7 @@ private:
     double rays_per_second() const;
 };
 
-// A variant of the render beside it.
+// A variant of the render, compared with it.
 struct RaceFigures {
     std::string name;
     Race race;

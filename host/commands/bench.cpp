@@ -68,8 +68,7 @@ void check_ray_options(const RayOptions &o) {
 int run_rays(const RayOptions &o) {
     check_ray_options(o);
     SceneDescription scene = load_scene(o.scene);
-    scene.strategy[AXIS_integrator] =
-        CHOICE_integrator_path; // whatever the image estimates: shadow rays go to the lights
+    scene.strategy[AXIS_integrator] = CHOICE_integrator_path; // for any scene: its shadow rays go to points on lights
     scene.strategy[AXIS_lighting] = CHOICE_lighting_mis;
     scene.strategy[AXIS_sampler] = CHOICE_sampler_independent;
     const auto [pick, build] = choose_kernel(o.device, scene);
@@ -201,7 +200,7 @@ int run_renders(const RenderBenchOptions &o) {
     report["share"] = shares.json();
     for (int lanes : {1, 4, 8, 16}) {
         if (pick.info.type == "gpu" && lanes > pick.info.native_lanes)
-            continue; // minutes of compilation for widths that a GPU never renders with
+            continue; // a GPU renders with 1 lane only, and its compiler takes minutes for more
         BuildOptions other = build;
         other.lanes = lanes;
         report["widths"][std::to_string(lanes)] =

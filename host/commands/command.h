@@ -1,5 +1,5 @@
 // A command of `opal` as data: its name, its options as rows, and the function that runs it.
-// The parser (commands/parse.h) reads these rows; whatever else lists options reads them, too.
+// The parser (commands/parse.h) reads these rows, as everything else does that lists options.
 #pragma once
 
 #include <filesystem>
@@ -13,20 +13,20 @@
 
 namespace opal {
 
-// An entry of a map, which exists only where the option was given: map["lighting"] = "mis".
+// A target: the entry of a map, made if the option is given: map["lighting"] = "mis".
 struct MapEntry {
     std::map<std::string, std::string> *map;
     std::string key;
 };
 
-// The variable that an option sets. A bool is a flag without a value; a vector takes several values. An optional
-// stays empty where the option was not given.
+// The variable that an option sets. A bool is a flag without a value, a vector takes several values, an optional stays
+// empty if the option is not given.
 using OptionTarget = std::variant<bool *, int *, unsigned *, double *, std::string *, std::filesystem::path *, MapEntry,
                                   std::optional<unsigned> *, std::vector<unsigned> *, std::vector<std::string> *>;
 
-// What a value must be.
+// Checks of a value.
 template <class T> struct Range {
-    T least, greatest; // both are possible
+    T least, greatest; // inclusive
 };
 template <class T> struct OneOf { std::vector<T> values; };
 struct Positive {};
@@ -35,22 +35,22 @@ using OptionCheck = std::variant<std::monostate, Range<int>, Range<unsigned>, Ra
                                  OneOf<std::string>, Positive, Duration>;
 
 struct OptionRow {
-    std::string flags; // "-o,--output"; without dashes: an argument known by its place, "SCENE.xml"
+    std::string flags; // "-o,--output"; without dashes a positional argument, "SCENE.xml"
     OptionTarget target;
     std::string help;
     OptionCheck check{};
-    std::optional<std::string> type{}; // the word for a value in the help; none: by the target, as TEXT or UINT
+    std::optional<std::string> type{}; // name of the value in the help; none: TEXT or UINT, by the target
     const char *group = nullptr;       // the heading in the help; nullptr: Options
-    const char *excludes = nullptr;    // a flag that may not be given beside this one
+    const char *excludes = nullptr;    // a flag that excludes this one
     std::string default_text{};        // the default in the help; empty: the target's value
     bool required = false;
-    bool comma_separated = false; // a vector's values may be given as one word: 4,16,64
+    bool comma_separated = false; // values of a vector may be one word: 4,16,64
     bool many_words = false;      // a vector takes all words up to the next flag
 };
 
 struct Command {
     std::string name;
-    std::string help; // one sentence; empty: `opal --help` does not list the command
+    std::string help; // one sentence; empty: hidden in `opal --help`
     std::vector<OptionRow> options{};
     std::function<int()> run{};         // returns the process's exit code; throws Error; empty: see subcommands
     std::vector<Command> subcommands{}; // one of them must be named

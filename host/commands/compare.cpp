@@ -1,4 +1,4 @@
-// opal compare: an image held against another.
+// opal compare: errors of an image against a reference, and a test of their means.
 #include "base/error.h"
 #include "base/json.h"
 #include "base/log.h"
@@ -23,7 +23,7 @@ struct Options {
 
 bool is_variance(const std::string &layer) { return layer.starts_with("variance."); }
 
-// Layers that `a` holds and `b` does not, variances apart: where they are missing there is no test, but all else.
+// Names of the layers in `a` that `b` lacks. Variances do not count: without them there is no test, but all else.
 std::string missing_layers(const Image &a, const Image &b) {
     std::vector<std::string> names;
     for (const Layer &layer : a.layers)
@@ -42,11 +42,11 @@ void check_comparable(const Options &o, const Image &image, const Image &referen
             throw Error(fmt::format("the layers differ: {} has no {}, which {} holds", file, missing, other));
 }
 
-// As opal render wrote them; 0 where the image does not say.
-double samples_of(const Image &image) { return image.number("opal.spp"); } // a pixel
+// The samples a pixel that opal render noted in the header; 0 if there is no note.
+double samples_of(const Image &image) { return image.number("opal.spp"); }
 double empty_pixels(const Image &image) { return image.number("opal.empty_pixels"); }
 
-// Why there is no test of the means; empty: there is one.
+// The reason why the means cannot be tested; empty if they can.
 std::string why_untested(const std::string &file, const Image &image) {
     for (const char *name : {"variance.R", "variance.G", "variance.B"})
         if (!image.find(name))

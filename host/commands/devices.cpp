@@ -24,7 +24,7 @@ std::string memory_text(unsigned long long bytes) {
 
 std::string lanes_text(int lanes) { return fmt::format("{} lane{}", lanes, lanes == 1 ? "" : "s"); }
 
-// What a render makes use of.
+// The features of the device that a render uses.
 std::string used_of(const DeviceInfo &d) {
     const std::string doubles =
         d.fp64 ? fmt::format(", double ({})", lanes_text(lanes_for(d, 0, MathMode::double_precision))) : "";
@@ -32,7 +32,7 @@ std::string used_of(const DeviceInfo &d) {
                        lanes_text(d.native_lanes), group_size(d), bytes_text(d.max_allocation), doubles);
 }
 
-// What the device has and no kernel takes, and what it lacks.
+// The features that kernels do not use, and those that the device lacks.
 std::string unused_of(const DeviceInfo &d) {
     std::string text = "local memory";
     if (d.native_lanes == 1 && d.vector_width > 1)

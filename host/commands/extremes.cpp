@@ -1,4 +1,4 @@
-// opal extremes: where does single precision end? Scenes stretched over many decades, single against double precision.
+// opal extremes: where single precision ends. Scenes are stretched over many decades, single against double precision.
 #include "base/error.h"
 #include "base/json.h"
 #include "base/log.h"
@@ -18,7 +18,7 @@ struct ExtremesOptions {
     std::vector<std::string> names;
     extremes::StressSettings settings;
     bool quick = false, list = false;
-    std::optional<unsigned> side, spp; // where the command line names them
+    std::optional<unsigned> side, spp; // if the command line gives them
 };
 
 std::vector<const extremes::StressRow *> chosen(const std::vector<std::string> &names) {

@@ -21,7 +21,7 @@ struct InspectOptions {
     std::string device;
 };
 
-// inspect asks no device, so "auto" is what a CPU device on this machine would say of its float vectors.
+// The width that "auto" means for a CPU device here. inspect opens no device, so the host's vectors decide.
 int host_vector_width() {
 #if defined(__x86_64__)
     return __builtin_cpu_supports("avx512f") ? 16 : __builtin_cpu_supports("avx2") ? 8 : 4;
@@ -120,7 +120,7 @@ void print_features(const Features &features) {
     }
 }
 
-// What each feature that the scene does not need would cost in the kernel.
+// The cost of each feature that the scene does not need, if the kernel had it.
 void print_savings(const InspectOptions &options, const SceneDescription &scene) {
     const auto [pick, build] = choose_kernel(options.device, scene);
     const FlatScene flat = flatten(scene, build.lanes);

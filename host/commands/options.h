@@ -17,14 +17,14 @@ struct SceneOptions {
 
 // --integrator, a flag for each strategy option, --lenient, --cl-dir.
 std::vector<OptionRow> strategy_rows(SceneOptions &options);
-// SCENE.xml and the same.
+// SCENE.xml, then strategy_rows.
 std::vector<OptionRow> scene_rows(SceneOptions &options);
 OptionRow device_row(std::string &device); // --device, for pick_device
 OptionRow cl_dir_row(std::string &cl_dir); // --cl-dir, for load_sources
 
-// Load, override, check. Throws Error.
+// Loads the scene, applies the overrides and checks the strategy. Throws Error.
 SceneDescription load_scene(const SceneOptions &options);
-// The device that renders the scene, and the kernel's width and math there.
+// The device that renders the scene, and width and math of its kernel.
 struct KernelChoice {
     DevicePick pick;
     BuildOptions build;
@@ -34,7 +34,7 @@ KernelChoice choose_kernel(const std::string &device, const SceneDescription &sc
 // The kernels' sources in that folder; empty: the embedded ones.
 Sources load_sources(const std::string &cl_dir);
 
-// The image's size in pixels where one is given (0: none). One side alone keeps the aspect.
+// Sets the image's size in pixels; 0: not given. If one side is given, the other keeps the aspect.
 void set_size(Camera &camera, unsigned width, unsigned height);
 
 } // namespace opal

@@ -1,4 +1,4 @@
-// The command line, parsed by the rows of the commands. parse.cpp alone knows CLI11.
+// The parser of the command line, by the rows of the commands. Only parse.cpp includes CLI11.
 #pragma once
 
 #include "commands/command.h"
@@ -6,7 +6,7 @@
 namespace opal {
 
 // Sets the targets of the options in `words` (without the program's name) and returns the `run` of the command that
-// they name. --help and --version print their text, and `run` then does nothing. Error: what is wrong with the words.
+// they name. --help and --version print their text, and `run` then does nothing. Error if the words are wrong.
 std::function<int()> parse(const std::vector<Command> &commands, const std::vector<std::string> &words);
 
 } // namespace opal

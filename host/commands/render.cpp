@@ -59,8 +59,8 @@ StopRule stop_rule(const Options &o) {
     return rule;
 }
 
-// Relaxed math may do what it likes, and some drivers' functions then keep 11 bits. Measured on the spot, as no list
-// knows the next driver: a kernel that is the same for all scenes, so that most drivers have it in their cache.
+// Warns if the driver's relaxed functions are too coarse: some keep 11 bits. They are measured, because no list knows
+// the next driver. The kernel is the same for all scenes, so that most drivers have it in their cache.
 void warn_of_fast_functions(const Device &device, const BuildOptions &build, const Sources &sources) {
     std::vector<std::string> wrong;
     for (const Finding &f : check_functions(device, build, sources))
@@ -72,7 +72,7 @@ void warn_of_fast_functions(const Device &device, const BuildOptions &build, con
                          device.info.name, device.info.driver, fmt::join(wrong, "; ")));
 }
 
-// What a render is asked for, checked before a device is opened.
+// The request of a render, checked before a device is opened.
 struct Request {
     SceneDescription scene;
     StopRule rule;

@@ -1,4 +1,4 @@
-// opal selftest: is what this device computes right? Each group of checks runs in a process of its own.
+// opal selftest: does this device compute right? Each group of checks runs in a process of its own.
 #include "selftest/selftest.h"
 #include "base/json.h"
 #include "base/log.h"
@@ -117,7 +117,7 @@ struct SelftestReport {
 private:
     size_t count_checks() const;
     size_t count_failed() const;
-    size_t count_problems() const; // jobs that did not end well
+    size_t count_problems() const; // jobs that crashed, hung or failed
     const Finding *find_check(size_t variant, const std::string &check) const;
     std::string row(const Finding &check) const;
 };
@@ -224,7 +224,7 @@ int run(const Options &o) {
     return report.passed() ? 0 : 1;
 }
 
-// The other side: runs one group and prints its findings.
+// The hidden command that a job runs: one group, whose findings it prints.
 int run_group(const std::vector<std::string> &words) {
     if (words.size() < 6)
         throw Error("selftest-group is started by opal selftest");

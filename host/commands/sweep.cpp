@@ -37,7 +37,7 @@ struct Options {
     bool quiet = false;
 };
 
-// Identity of what a sweep measures: a hash over the scene's text, its resolved strategy and its meshes.
+// The identity of a sweep, by which it is resumed: a hash of the scene's text, its resolved strategy and its meshes.
 std::string hash_of(const SceneDescription &scene) {
     std::string bytes = read_file(scene.file);
     bytes += dump(strategy_json(scene));
@@ -119,7 +119,7 @@ std::vector<DevicePick> pick_devices(const Options &o) {
     return picks;
 }
 
-// Each strategy on each device; their names tell which where there are several.
+// Each strategy on each device. If there are several devices, the names say which.
 std::vector<Candidate> cross(const std::vector<Candidate> &strategies, const std::vector<DevicePick> &devices) {
     if (devices.size() == 1)
         return strategies;
@@ -162,7 +162,8 @@ int run_part(Part part, const SweepPlan &plan, const DevicePick &pick, const std
     return 0;
 }
 
-// The same in a process of its own, for one process loads one driver; what it measured is in the folder.
+// Runs the sweep of one device in a process of its own, as a process can load one driver only. Its results are in the
+// folder.
 int run_part_apart(Part part, const SweepPlan &plan, const DevicePick &pick, const std::vector<Candidate> &candidates,
                    SweepRecord &record) {
     const pid_t child = fork();
@@ -177,7 +178,7 @@ int run_part_apart(Part part, const SweepPlan &plan, const DevicePick &pick, con
         }
         _exit(code);
     }
-    watch_interrupts(); // the child has it too, and ends
+    watch_interrupts(); // the child gets the signal too, and ends
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
@@ -209,9 +210,9 @@ int run(const Options &o) {
     const SweepRecord fresh = fresh_record(o, scene, devices);
     plan.folder = make_folder(o, scene);
     SweepRecord record = resume(plan.folder, fresh);
-    for (const Candidate &c : candidates) // all rows now: references to them stay good
+    for (const Candidate &c : candidates) // all rows at once, as references to them are kept
         record.strategy(c.name, c.label).device = c.device;
-    save(record, plan.folder); // the folder can be written
+    save(record, plan.folder); // fails early if the folder cannot be written
     for (const Part part : {measure_points, render_equal_time_images})
         for (size_t d = 0; d < devices.size(); d++) {
             std::vector<Candidate> own;
@@ -230,7 +231,7 @@ int run(const Options &o) {
 Command sweep_command() {
     auto o = std::make_shared<Options>();
     std::vector<OptionRow> rows = scene_rows(o->scene);
-    std::erase_if(rows, [](const OptionRow &row) { return row.flags == "--math"; }); // here it takes several
+    std::erase_if(rows, [](const OptionRow &row) { return row.flags == "--math"; }); // --math takes several modes here
     return {
         .name = "sweep",
         .help = "Measure error against time of several strategies on a scene, as one HTML page",

@@ -48,7 +48,7 @@ nlohmann::json json_of(const ConformanceCase &c) {
 int run(const Options &o) {
     if (!o.json.empty())
         check_writable(o.json);
-    std::vector<TestDescription> tests; // all are read first: a mistake in the last is told at once
+    std::vector<TestDescription> tests; // all are read first, so that a mistake in the last is reported at once
     for (const std::string &file : o.files)
         tests.push_back(load_test(file, o.scene.load));
 

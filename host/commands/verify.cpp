@@ -16,9 +16,9 @@ namespace opal {
 
 namespace {
 
-constexpr int default_side = 32; // pixels of the longer side: samples are worth more here than pixels
+constexpr int default_side = 32; // pixels of the longer side; samples matter more here than pixels
 constexpr unsigned least_spp = 32;
-constexpr unsigned strata = 1024; // of the stratified sampler; past them it starts over
+constexpr unsigned strata = 1024; // of the stratified sampler, which repeats after them
 
 struct Options {
     SceneOptions scene;
@@ -41,7 +41,7 @@ private:
     double budget_;
 };
 
-// A box filter, so that pixels are independent, and few pixels, in the scene's aspect where no more than one side is
+// Sets a box filter, so that pixels are independent, and a small image, in the scene's aspect unless both sides are
 // given.
 void simplify_image(Camera &camera, const Options &o) {
     const double aspect = double(camera.width) / camera.height;
@@ -72,14 +72,14 @@ std::vector<FlatScene> flatten_all(SceneDescription scene, const std::vector<Nam
         scene.strategy = s.strategy;
         scenes.push_back(flatten(scene, lanes_for(device, s.strategy.lanes, s.strategy.math)));
     }
-    // One kernel for all: compiling one for each would take most of the time, see shared_features.
+    // One kernel for all strategies (shared_features): compiling one for each would take most of the time.
     const Features shared = shared_features(scenes);
     for (size_t i = 0; !own_kernels && i < scenes.size(); i++)
         scenes[i].features = shared;
     return scenes;
 }
 
-// Whole passes, the last of which is meant to end after that many seconds; false when interrupted.
+// Renders whole passes for about that many seconds. False when interrupted.
 bool render_for(Renderer &renderer, double seconds) {
     const Clock clock(seconds);
     unsigned end = least_spp;
@@ -106,7 +106,7 @@ std::vector<StrategyRender> render_all(const Options &o, const std::vector<Named
         options.build.math = s.math;
         options.sources = &sources;
         Renderer renderer(device, scenes[i], options);
-        renderer.render(1); // drivers finish compiling now, not in the strategy's time
+        renderer.render(1); // drivers finish compiling here, outside the strategy's time
         renderer.restart(o.seed + unsigned(i));
         if (!render_for(renderer, std::max(0.0, clock.left() / double(strategies.size() - i))))
             break;

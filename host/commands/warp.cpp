@@ -1,4 +1,4 @@
-// opal warp: does what is drawn follow the density that is stated? Figures and a picture.
+// opal warp: tests samples of a warp, BSDF or light against their density, and draws both.
 #include "base/log.h"
 #include "base/table.h"
 #include "commands/commands.h"

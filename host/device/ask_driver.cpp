@@ -27,7 +27,7 @@ fs::path probe_binary = "/proc/self/exe";
 
 struct Probe {
     Driver driver;
-    std::optional<ChildProcess> process; // none where there is no library to load
+    std::optional<ChildProcess> process; // none if there is no library to load
 };
 
 Probe start_probe(const Driver &driver) {
@@ -47,7 +47,7 @@ DeviceInfo problem_line(const Driver &driver, const std::string &problem) {
     return line;
 }
 
-// What is wrong with a process that ended this way; empty: nothing.
+// The problem of a process that ended this way; empty if there is none.
 std::string problem_of(const Ending &ending, double time_limit) {
     if (!ending.in_time)
         return fmt::format("did not answer within {:g} s", time_limit);
@@ -75,8 +75,8 @@ std::vector<DeviceInfo> finish_probe(Probe &probe, ChildProcess::Clock::time_poi
     return devices;
 }
 
-// The library that an .icd file names on its first line that is neither blank nor a comment; empty where there is none
-// or it cannot be read.
+// The library in an .icd file: its first line that is neither blank nor a comment. Empty if there is none, or if the
+// file cannot be read.
 std::string library_of(const fs::path &icd) {
     std::istringstream lines;
     try {
@@ -106,7 +106,7 @@ std::vector<Driver> drivers_in(const fs::path &folder) {
     return drivers;
 }
 
-// A variable of the environment; empty where it is not set.
+// A variable of the environment; empty if it is not set.
 std::string variable(const char *name) {
     const char *const text = std::getenv(name);
     return text ? text : "";

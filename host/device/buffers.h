@@ -1,5 +1,5 @@
-// Buffers in the device's memory. One that does not fit is an Error naming device, what for, bytes wanted and
-// available.
+// Buffers in the device's memory. A buffer that does not fit is an Error that names the device, its purpose, and the
+// bytes wanted and available.
 #pragma once
 
 #include "device/opencl.h"

@@ -65,7 +65,7 @@ std::optional<int> as_index(const std::string &text) {
     return error == std::errc() && end == text.data() + text.size() ? std::optional<int>(value) : std::nullopt;
 }
 
-// Whether `wanted` means this device, and as what.
+// Whether `wanted` means this device, and the reason.
 std::optional<std::string> match(const DeviceInfo &device, const std::string &wanted) {
     if (const auto index = as_index(wanted))
         return *index == device.index ? std::optional<std::string>("asked for by index") : std::nullopt;

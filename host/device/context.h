@@ -1,4 +1,4 @@
-// Finding, naming and opening OpenCL devices. Needs no header of OpenCL, whose price is 2 s a file.
+// OpenCL devices: listing, picking and opening them. Includes no header of OpenCL, which takes 2 s a file to compile.
 #pragma once
 
 #include "scene/strategy.h"
@@ -15,19 +15,19 @@ struct DeviceInfo {
     unsigned long long memory = 0, max_allocation = 0; // bytes
     unsigned compute_units = 0;
     bool fp64 = false;
-    unsigned vector_width = 1; // floats, as the driver says it
+    unsigned vector_width = 1; // floats, by the driver
     int native_lanes = 1;      // 1 on a GPU, else the widest of 1, 4, 8 and 16 that fits vector_width
     std::string library;       // the driver's, by the path it was found at; empty: whatever the loader finds
-    int platform_place = 0, device_place = 0; // among what that driver alone lists
+    int platform_place = 0, device_place = 0; // indices in the list of that driver alone
     std::string problem; // why the platform or device could not be asked ("crashed", "timed out"), else empty
 };
 
-// Work-items of a group. All that measures a device takes the size that renders, as a driver's functions may have other
-// bits in another (Intel's rsqrt in groups below 8).
+// Work-items of a group, the same for renders and for all checks of a device: a driver's functions may give other bits
+// in groups of another size (Intel's rsqrt in groups below 8).
 inline size_t group_size(const DeviceInfo &info) { return info.type == "gpu" ? 64 : 1; }
 
-// Asks every driver in a process of its own (device/ask_driver.h), all at once, so that one that crashes or hangs costs
-// its line and nothing else. time_limit: seconds for each.
+// All devices. Every driver is asked in a process of its own (device/ask_driver.h), all at once: one that crashes or
+// hangs costs one line of the list. time_limit: seconds for each.
 std::vector<DeviceInfo> list_devices(double time_limit = 20);
 
 // The device `render` takes: `wanted` is an index, "cpu", "gpu" or part of a name; empty: the default, with the reason.
@@ -48,7 +48,7 @@ struct Device {
     DeviceInfo info;
     std::shared_ptr<const DeviceHandles> handles; // a copy shares the device
 };
-// Loads that device's driver and no other into this process. Error naming the device and the OpenCL error.
+// Loads the driver of that device, and no other, into this process. Error that names the device and the OpenCL error.
 Device open_device(const DeviceInfo &info);
 
 } // namespace opal

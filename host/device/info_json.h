@@ -1,4 +1,4 @@
-// DeviceInfo as JSON: what a probe says to the process that started it, and what `opal devices --json` prints.
+// DeviceInfo as JSON, for `opal devices --json` and between the processes of ask_driver.h.
 #pragma once
 
 #include "device/context.h"

@@ -16,7 +16,7 @@ std::string type_name(cl_device_type type) {
     return type & CL_DEVICE_TYPE_GPU ? "gpu" : type & CL_DEVICE_TYPE_CPU ? "cpu" : "accelerator";
 }
 
-// How many paths a work-item should carry: the widest of 1, 4, 8, 16 that the device's float vectors fill.
+// The widest of 1, 4, 8 and 16 lanes that the device's float vectors fill.
 int lanes_of(const DeviceInfo &info) {
     if (info.type == "gpu")
         return 1;
@@ -48,14 +48,13 @@ void describe(const cl::Device &device, DeviceInfo &info) {
         info.problem = "has no compiler";
 }
 
-// Tells the OpenCL loader, which reads its environment when it is first called, to load this library and no other;
-// undone afterwards, so that processes started later do not inherit it. Three loaders are about:
+// Makes the OpenCL loader load this library and no other, by its environment, which it reads when it is first called.
+// The variables are restored afterwards, so that child processes do not inherit them. Three loaders are in use:
 // - Khronos's takes libraries from OCL_ICD_FILENAMES, and from OCL_ICD_VENDORS a folder of .icd files (icd.c,
 // icd_linux.c);
 // - NVIDIA's, made from it, wants a slash at the end of that folder;
 // - ocl-icd does not know OCL_ICD_FILENAMES, but an OCL_ICD_VENDORS that is no folder and no .icd file is the library
-// itself
-//   (libOpenCL(7)).
+// itself (libOpenCL(7)).
 // The library's name in both variables is understood by each, and needs no folder to be written.
 class LoaderEnvironment {
 public:
@@ -92,8 +91,7 @@ std::vector<cl::Platform> platforms_of(const std::string &library) {
     return platforms;
 }
 
-// Where the dynamic linker found a library that is loaded. Empty where it is not: the loader then took no notice of
-// what it was told and listed whatever it found.
+// The path of a loaded library. Empty if it is not loaded: the loader then ignored its environment.
 std::string path_of(const std::string &library) {
     void *const handle = library.empty() ? nullptr : dlopen(library.c_str(), RTLD_LAZY | RTLD_NOLOAD);
     if (!handle)

@@ -1,4 +1,4 @@
-// Loading one driver into this process and walking through its devices. Only the probe and open_device do so.
+// Loads one driver into this process and visits its devices. Only probe-platform and open_device use it.
 #pragma once
 
 #include "device/opencl.h"

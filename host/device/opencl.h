@@ -1,5 +1,5 @@
-// OpenCL itself: its C++ header and the handles of an open device. Few files include this, as the header is dear to
-// compile: those that make buffers, build programs and launch kernels.
+// OpenCL's C++ header, and the handles of an open device. Only files that make buffers, build programs or launch
+// kernels include this, as the header is slow to compile.
 #pragma once
 
 #define CL_HPP_TARGET_OPENCL_VERSION 120

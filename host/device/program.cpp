@@ -11,7 +11,7 @@ namespace opal {
 
 namespace {
 
-// $OPAL_KERNEL_FLAGS: more of them, to try what a driver offers; the tests' -Werror comes by it.
+// $OPAL_KERNEL_FLAGS adds flags, for experiments. The tests set -Werror by it.
 std::string build_flags(const BuildOptions &options) {
     std::string flags = "-cl-std=CL1.2";
     if (options.math == MathMode::fast)

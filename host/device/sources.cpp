@@ -53,7 +53,7 @@ public:
         if (found == files_.end())
             throw Error(fmt::format("{}: no file \"{}\" below cl/; available: {}", asked_from, name, names_of(files_)));
         if (left_out(name)) {
-            text_ += '\n'; // keeps the place of the directive
+            text_ += '\n'; // an empty line keeps the numbers of the lines
             return;
         }
         done_.insert(name);
@@ -67,7 +67,7 @@ public:
     std::string take() { return std::move(text_); }
 
 private:
-    // What is there already, and what is for programs of another width.
+    // A file that is expanded already, or that is for programs of another width.
     bool left_out(const std::string &name) const {
         const char *other_width = lanes_ == 1 ? "many_lanes/" : "one_lane/";
         return done_.count(name) != 0 || name.find(other_width) != std::string::npos;

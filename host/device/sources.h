@@ -1,4 +1,4 @@
-// The text of a program: self-contained, so that drivers cache it rightly.
+// The text of a program, without includes: drivers' caches see the text alone.
 #pragma once
 
 #include "scene/strategy.h"
