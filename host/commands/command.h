@@ -28,6 +28,7 @@ using OptionTarget = std::variant<bool *, int *, unsigned *, double *, std::stri
 template <class T> struct Range {
     T least, greatest; // inclusive
 };
+template <class T> Range(T, T) -> Range<T>; // clang deduces no aggregates before version 17
 template <class T> struct OneOf { std::vector<T> values; };
 struct Positive {};
 struct Duration {}; // a number of seconds above 0, or with a unit: 60s, 2min, 1h

@@ -95,7 +95,7 @@ SweepRecord fresh_record(const Options &o, const SceneDescription &scene, const 
 }
 
 std::filesystem::path make_folder(const Options &o, const SceneDescription &scene) {
-    const std::filesystem::path folder = o.out.empty() ? scene.file.stem().string() + "_sweep" : o.out;
+    std::filesystem::path folder = o.out.empty() ? scene.file.stem().string() + "_sweep" : o.out;
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error)

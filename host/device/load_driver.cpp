@@ -97,7 +97,7 @@ std::string path_of(const std::string &library) {
     if (!handle)
         return {};
     link_map *map = nullptr;
-    const std::string path = dlinfo(handle, RTLD_DI_LINKMAP, &map) == 0 ? map->l_name : "";
+    std::string path = dlinfo(handle, RTLD_DI_LINKMAP, &map) == 0 ? map->l_name : "";
     dlclose(handle);
     return path;
 }

@@ -232,7 +232,7 @@ void list_faces(const TriangleSoup &soup, std::vector<Face> faces, const std::ve
     }
     scene.face_vertices.resize(3 * vertices.size());
     for (const auto &[position, place] : vertices)
-        std::copy(position.begin(), position.end(), &scene.face_vertices[3 * place]);
+        std::copy(position.begin(), position.end(), &scene.face_vertices[3 * size_t(place)]);
 }
 
 } // namespace opal

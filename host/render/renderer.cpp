@@ -15,7 +15,7 @@ namespace opal {
 namespace {
 
 // The buffer of a pass's samples. Kernels index its floats by 32 bits.
-constexpr unsigned long long sample_bytes = 4 * OPAL_SAMPLE_FLOATS;
+constexpr unsigned long long sample_bytes = 4ull * OPAL_SAMPLE_FLOATS;
 constexpr unsigned long long max_sample_buffer_bytes = 256ull << 20,
                              max_buffer_samples = (1ull << 32) / OPAL_SAMPLE_FLOATS;
 
@@ -68,8 +68,8 @@ Renderer::Renderer(const Device &device, const FlatScene &scene, const RenderOpt
     shape_ = launch_shape();
     const unsigned long long bytes =
         std::min({max_sample_buffer_bytes, device.info.max_allocation, sample_bytes * max_buffer_samples});
-    buffer_spp_ =
-        unsigned(std::clamp<unsigned long long>(bytes / sample_bytes / pixels_, 1, max_samples_a_chunk * max_chunks));
+    buffer_spp_ = unsigned(
+        std::clamp<unsigned long long>(bytes / sample_bytes / pixels_, 1, 1ull * max_samples_a_chunk * max_chunks));
     check_room(device, pixels_ * (sample_bytes * buffer_spp_ + 4ull * FILM_PLANES + 4), "the film and its samples");
 
     const cl::Program program = build_program(device, program_text(scene.features, options.build, *options.sources),
@@ -124,7 +124,7 @@ void Renderer::restart(unsigned seed, unsigned first_sample) {
         device_.handles->queue.enqueueFillBuffer(on_device_->film, cl_uint(0), 0, pixels_ * FILM_PLANES * 4);
         device_.handles->queue.enqueueFillBuffer(on_device_->counts, cl_uint(0), 0, pixels_ * 4);
         device_.handles->queue.enqueueFillBuffer(on_device_->invalid, cl_uint(0), 0,
-                                                 (1 + 2 * OPAL_INVALID_RECORDS) * 4);
+                                                 (1 + 2 * OPAL_INVALID_RECORDS) * 4ull);
         return device_.handles->queue.finish();
     });
 }
