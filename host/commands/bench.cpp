@@ -166,9 +166,9 @@ int run_renders(const RenderBenchOptions &o) {
     if (!o.json.empty())
         check_writable(o.json);
     const SceneDescription scene = load_scene(o.scene);
-    const KernelChoice kernel = choose_kernel(o.device, scene);
-    const DevicePick &pick = kernel.pick;
-    const BuildOptions &build = kernel.build; // clang captures no structured binding before version 16
+    const KernelChoice choice = choose_kernel(o.device, scene);
+    const DevicePick &pick = choice.pick;
+    const BuildOptions &build = choice.build; // clang captures no structured binding before version 16
     const FlatScene flat = flatten(scene, build.lanes);
     const Device device = open_device(pick.info);
     const Sources sources = load_sources(o.scene.cl_dir);
