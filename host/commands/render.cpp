@@ -106,9 +106,9 @@ Request prepare(const Options &o) {
 }
 
 // Writes the image with the report in its header, and tells the result. Returns the exit code.
-int report(const Request &request, const RenderedFilm &rendered, RenderReport render,
+int report(const Request &request, const RenderedFilm &rendered, const RenderReport &render,
            const std::optional<AutoChoice> &choice, bool variance) {
-    for (const std::string &line : film_warnings(rendered.film, rendered.kernel_seconds))
+    for (const std::string &line : film_warnings(render))
         warn(line);
     Image image = image_of(rendered.film, variance);
     nlohmann::json json = render.json();

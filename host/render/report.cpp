@@ -39,12 +39,11 @@ json strategy_json(const SceneDescription &scene) {
 }
 
 double RenderReport::spp() const {
-    const FilmStatistics s = statistics_of(film);
-    return double(s.samples + s.invalid) / (double(film.width) * film.height);
+    return double(statistics.samples + statistics.invalid) / (double(film.width) * film.height);
 }
 
 std::string RenderReport::text() const {
-    const FilmStatistics s = statistics_of(film);
+    const FilmStatistics &s = statistics;
     const std::string of =
         s.empty_pixels ? "of the pixels that have samples" : fmt::format("+- {:.2g}", s.stderr_luminance);
     return fmt::format("result  mean luminance {:.6g} {}, {:.4g} M paths/s over {:.3g} s of kernel time",
@@ -52,7 +51,7 @@ std::string RenderReport::text() const {
 }
 
 nlohmann::json RenderReport::json() const {
-    const FilmStatistics s = statistics_of(film);
+    const FilmStatistics &s = statistics;
     nlohmann::json j;
     j["scene"] = scene.file.string();
     j["device"] = device.name;
@@ -84,7 +83,7 @@ nlohmann::json RenderReport::json() const {
 }
 
 StopReport report_stop(const StopRule &rule, const StopResult &stopped, const RenderReport &render) {
-    const FilmStatistics s = statistics_of(render.film);
+    const FilmStatistics &s = render.statistics;
     StopReport report{rule, stopped, render.spp(), render.seconds.render};
     report.relative_error = s.empty_pixels         ? INFINITY
                             : s.mean_luminance > 0 ? s.stderr_luminance / s.mean_luminance
@@ -132,7 +131,8 @@ nlohmann::json StopReport::json() const {
     return j;
 }
 
-std::vector<std::string> film_warnings(const Film &film, double seconds) {
+std::vector<std::string> film_warnings(const RenderReport &render) {
+    const Film &film = render.film;
     std::vector<std::string> lines;
     if (film.invalid) {
         std::string places;
@@ -141,7 +141,7 @@ std::vector<std::string> film_warnings(const Film &film, double seconds) {
         lines.push_back(fmt::format("{} samples were NaN or infinite and are left out of the image; the first:{}",
                                     film.invalid, places));
     }
-    const FilmStatistics s = statistics_of(film);
+    const FilmStatistics &s = render.statistics;
     if (s.empty_pixels == 0)
         return lines;
     const size_t pixels = film.count.size();
@@ -151,7 +151,7 @@ std::vector<std::string> film_warnings(const Film &film, double seconds) {
         s.empty_pixels, pixels, 100 * double(s.empty_pixels) / double(pixels), film.invalid ? "valid " : "");
     if (!film.invalid)
         words += fmt::format("; one sample of every pixel takes about {:.2g} s",
-                             seconds * double(pixels) / double(s.samples));
+                             render.seconds.render * double(pixels) / double(s.samples));
     lines.push_back(words);
     return lines;
 }

@@ -29,6 +29,7 @@ struct RenderReport {
     int lanes = 1;
     unsigned seed = 0;
     RenderSeconds seconds{};
+    FilmStatistics statistics = statistics_of(film); // a pass over all pixels, made once
 
     double spp() const; // samples a pixel, on average
     std::string text() const;
@@ -52,8 +53,8 @@ struct StopReport {
 };
 StopReport report_stop(const StopRule &rule, const StopResult &stopped, const RenderReport &render);
 
-// What the image lacks: invalid samples, pixels without one. seconds: the film's kernel time.
-std::vector<std::string> film_warnings(const Film &film, double seconds);
+// What the image lacks: invalid samples, pixels without one.
+std::vector<std::string> film_warnings(const RenderReport &render);
 
 // Adds the report to the image's metadata, which become header attributes: "opal.KEY" for each key.
 void add_metadata(Image &image, const nlohmann::json &report, const std::string &command_line);
