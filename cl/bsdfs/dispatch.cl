@@ -1,12 +1,7 @@
 // dispatch: the BSDF of each lane's material, picked by kind. Each kind that the kernel has is computed for all lanes
 // as soon as one active lane needs it.
-#include "bsdfs/dielectric.cl"
-#include "bsdfs/diffuse.cl"
-#include "bsdfs/interface.cl"
+#include "bsdfs/*.cl"
 #include "bsdfs/list.h"
-#include "bsdfs/microfacet.cl"
-#include "bsdfs/mirror.cl"
-#include "bsdfs/phong.cl"
 #include "core/lanes.cl"
 #include "scene.cl"
 
