@@ -26,6 +26,7 @@ struct SourcePlace {
 // Names of kinds, as the XML gives them: "diffuse", "mesh".
 const char *bsdf_name(unsigned kind);    // kind: BSDF_*
 const char *emitter_name(unsigned kind); // kind: EMITTER_*
+int emitter_traits(unsigned kind);       // SURFACE_LIGHT | ...
 
 struct Bsdf {
     BsdfRecord record{}; // kind and parameters, ready for the device

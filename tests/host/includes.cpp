@@ -127,7 +127,7 @@ const std::vector<Room> floors = {
     {"camera.cl", {"shared", "core", "scene.cl"}},
     {"film", {"shared", "core", "scene.cl", "camera.cl"}},
     {"bsdfs", {"bsdfs/list.h", "core", "scene.cl"}},
-    {"emitters", {"emitters/list.h", "core", "scene.cl", "surface.cl"}},
+    {"emitters", {"shared", "emitters/list.h", "core", "scene.cl", "surface.cl"}},
     {"integrators", {"shared", "core", "scene.cl", "trace", "surface.cl", "bsdfs", "emitters"}},
     {"kernels",
      {"shared", "bsdfs/list.h", "emitters/list.h", "core", "scene.cl", "trace", "surface.cl", "camera.cl", "film",
