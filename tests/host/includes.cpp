@@ -130,7 +130,7 @@ const std::vector<Room> floors = {
     {"textures", {"shared", "textures/list.h", "core", "scene.cl"}},
     {"parameters.cl", {"shared", "core", "scene.cl", "textures"}},
     {"bsdfs", {"shared", "bsdfs/list.h", "core", "scene.cl", "surface.cl", "parameters.cl"}},
-    {"emitters", {"emitters/list.h", "core", "scene.cl", "surface.cl"}},
+    {"emitters", {"shared", "emitters/list.h", "core", "scene.cl", "surface.cl"}},
     {"integrators", {"shared", "core", "scene.cl", "trace", "surface.cl", "bsdfs", "emitters"}},
     {"kernels",
      {"shared", "bsdfs/list.h", "emitters/list.h", "core", "scene.cl", "trace", "surface.cl", "camera.cl", "film",
