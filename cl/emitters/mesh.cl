@@ -6,6 +6,7 @@
 #include "emitters/alias_table.cl"
 #include "emitters/interface.cl"
 #include "scene.cl"
+#include "shapes/triangle.cl"
 #include "surface.cl"
 
 static EmitterSample emitter_mesh_sample(const Scene *scene, uints id, v2 point, u2 triangle) {

@@ -8,6 +8,7 @@
 #include "core/rng.cl"
 #include "integrators/steps.cl"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "shared/types.h"
 #include "surface.cl"
 

@@ -6,6 +6,7 @@
 #include "core/rng.cl"
 #include "integrators/steps.cl"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "surface.cl"
 
 static mask path_step(const Scene *scene, Path *path, Hit hit, mask active) {

@@ -68,7 +68,7 @@ static v3 emitted(const Scene *scene, const Path *path, Surface s, mask active) 
     if (CHOSEN(scene, lighting, mis)) {
         // Distance^2 / cosine turns the light's density from area into solid angle measure.
         real cosine = fabs(v3_dot(s.normal, path->ray.d));
-        real area_pdf = emitter_area_pdf(scene, id, s.triangle, active_emitter);
+        real area_pdf = emitter_area_pdf(scene, id, s.primitive, active_emitter);
         real ratio = area_pdf * square(s.t) / (cosine * path->pdf);
         radiance = v3_scale(radiance, path->specular ? (real)(1) : mis_weight(scene, ratio));
     }

@@ -5,6 +5,7 @@
 #include "core/rng.cl"
 #include "integrators/steps.cl"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "surface.cl"
 
 #define WHITTED_SURVIVAL R(0.95)

@@ -15,6 +15,7 @@
 #include "kernels/sample_columns.cl"
 #include "kernels/probe_list.h"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "shared/types.h"
 #include "surface.cl"
 #include "trace/trace.cl"
@@ -131,12 +132,12 @@ kernel void trace(SCENE_PARAMETERS, global const float *rays, global float *out,
     real density = 0;
     if (EMITTER_KINDS > 0 && ANY(active_emitter)) {
         uints id = uints_pick(active_emitter, s.emitter, (uints)(0));
-        density = active_emitter ? emitter_area_pdf(&scene, id, s.triangle, active_emitter) : density;
+        density = active_emitter ? emitter_area_pdf(&scene, id, s.primitive, active_emitter) : density;
     }
     put(out, HIT_T, stride, base, active ? s.t : hit.t);
     put(out, HIT_U, stride, base, s.u);
     put(out, HIT_V, stride, base, s.v);
-    put_uints(out, HIT_SLOT, stride, base, hit.slot);
+    put_uints(out, HIT_SLOT, stride, base, hit.place);
     put(out, HIT_ANY, stride, base, any_hit(&scene, ray, ALL_LANES) ? (real)(1) : (real)(0));
     put_uints(out, HIT_EMITTER, stride, base, uints_pick(active, s.emitter, (uints)(OPAL_NONE)));
     put(out, HIT_LIGHT_DENSITY, stride, base, density);

@@ -82,7 +82,7 @@ Target open_bsdf(const std::string &kind, const Parameters &parameters, const De
     return target;
 }
 
-Mesh light_of(examples::Shape shape, double radiance) {
+Mesh light_of(Shape shape, double radiance) {
     Mesh mesh = examples::light(std::move(shape), radiance);
     mesh.bsdf = default_bsdf();
     return mesh;
