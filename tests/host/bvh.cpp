@@ -338,7 +338,7 @@ TriangleSoup with_others(TriangleSoup soup, unsigned count) {
             soup.vertices.empty() ? random.point(1) : soup.vertices[random.bits() % soup.vertices.size()];
         Box box = Box::empty();
         box.add(middle);
-        box.add(plus(middle, random.point(0.01f)));
+        box.add(Point3f{0.9f * middle[0], 0.9f * middle[1], 0.9f * middle[2]});
         soup.others.push_back({(SHAPE_triangle + 1 + kind) << OPAL_SHAPE_SHIFT | found[kind]++, box, 0});
     }
     return soup;
