@@ -8,7 +8,7 @@
 #include "emitters/list.h"
 #include "shapes/list.h"
 
-#define OPAL_BSDF_FEATURE(name) OPAL_FEATURE_ROW(bsdf_##name, "bsdf_" #name)
+#define OPAL_BSDF_FEATURE(name, traits) OPAL_FEATURE_ROW(bsdf_##name, "bsdf_" #name)
 #define OPAL_EMITTER_FEATURE(name) OPAL_FEATURE_ROW(emitter_##name, "emitter_" #name)
 #define OPAL_SHAPE_FEATURE(name) OPAL_FEATURE_ROW(shape_##name, "shape_" #name)
 

@@ -1,5 +1,4 @@
-// The records that host and device share, apart from shapes, BSDFs and emitters (shapes/list.h,
-// bsdfs/list.h, emitters/list.h).
+// The records that host and device share, apart from shapes, BSDFs, textures and emitters (shapes/list.h and so on).
 #ifndef OPAL_TYPES_H
 #define OPAL_TYPES_H
 
@@ -48,7 +47,7 @@ typedef struct {
 } FaceRange;
 OPAL_SIZE_CHECK(FaceRange, 8);
 
-// A mesh: index of its BSDF, and of its emitter or OPAL_NONE.
+// A mesh: the first word of its BSDF's record, and the index of its emitter or OPAL_NONE.
 typedef struct {
     uint bsdf, emitter;
 } MeshRecord;

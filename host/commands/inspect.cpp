@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <set>
 
 namespace opal {
 
@@ -54,7 +55,7 @@ std::string counts_text(const std::map<std::string, size_t> &counts) {
 
 void print_mesh(const Mesh &mesh) {
     row("", "{}: {}, {}{}", mesh.name, std::visit([](const auto &shape) { return shape.text(); }, mesh.shape),
-        bsdf_name(mesh.bsdf.record.kind), mesh.radiance ? ", emits " + color_text(*mesh.radiance) + " W/(m^2 sr)" : "");
+        bsdf_name(mesh.bsdf.kind()), mesh.radiance ? ", emits " + color_text(*mesh.radiance) + " W/(m^2 sr)" : "");
 }
 
 void print_scene(const SceneDescription &scene, const FlatScene &flat) {
@@ -67,10 +68,13 @@ void print_scene(const SceneDescription &scene, const FlatScene &flat) {
 
     std::map<std::string, size_t> bsdfs, emitters;
     for (const Mesh &mesh : scene.meshes)
-        ++bsdfs[bsdf_name(mesh.bsdf.record.kind)];
+        ++bsdfs[bsdf_name(mesh.bsdf.kind())];
     for (const EmitterRecord &emitter : flat.emitters)
         ++emitters[emitter_name(emitter.kind)];
-    row("bsdfs", "{} ({} different)", counts_text(bsdfs), flat.bsdfs.size());
+    std::set<uint> different;
+    for (const MeshRecord &mesh : flat.meshes)
+        different.insert(mesh.bsdf);
+    row("bsdfs", "{} ({} different)", counts_text(bsdfs), different.size());
     row("emitters", "{}", counts_text(emitters));
     for (const PointLight &light : scene.point_lights)
         row("", "point light, {} W", color_text(light.power));

@@ -10,12 +10,19 @@ std::string SourcePlace::text() const {
     return column == 0 ? fmt::format("{}:{}", file, line) : fmt::format("{}:{}:{}", file, line, column);
 }
 
-#define OPAL_NAME(name) #name,
 const char *bsdf_name(unsigned kind) {
-    static const char *const names[] = {OPAL_BSDFS(OPAL_NAME)};
+#define OPAL_BSDF_NAME(name, traits) #name,
+    static const char *const names[] = {OPAL_BSDFS(OPAL_BSDF_NAME)};
     return names[kind];
 }
 
+unsigned bsdf_traits(unsigned kind) {
+#define OPAL_BSDF_TRAITS(name, traits) traits,
+    static const unsigned all[] = {OPAL_BSDFS(OPAL_BSDF_TRAITS)};
+    return all[kind];
+}
+
+#define OPAL_NAME(name) #name,
 const char *emitter_name(unsigned kind) {
     static const char *const names[] = {OPAL_EMITTERS(OPAL_NAME)};
     return names[kind];
