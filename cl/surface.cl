@@ -10,7 +10,7 @@ typedef struct {
     v3 normal;           // geometric, unit, on the outer side: of triangles that of (p1-p0) x (p2-p0)
     Frame frame;         // around the shading normal
     v3 wi;               // towards the ray's origin, unit, in that frame
-    uints primitive;     // index of the triangle
+    uints primitive;     // its id (row `id` of blocks): of triangles the index
     real ray_offset;     // how far above the surface rays start (ray_offset_of)
     uints bsdf;          // first word of the BSDF's record
     uints emitter;       // index, OPAL_NONE where the surface does not emit

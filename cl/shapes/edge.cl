@@ -1,6 +1,6 @@
 // edge: the edge function of watertight ray-triangle intersection (Woop, Benthin and Wald 2013, "Watertight
-// Ray/Triangle Intersection"). one_lane/ and many_lanes/ test the tree's triangles by them,
-// trace/faces.cl those of the face list.
+// Ray/Triangle Intersection"). one_lane/ and many_lanes/ test the tree's triangles by it, trace/faces.cl
+// those of the face list.
 //
 // Vertices are moved to the ray's origin and sheared so that the ray becomes the axis of its largest component (kz).
 // Their edge functions then have exact signs unless they are 0: rounding is monotonic, so fl(ab) > fl(cd) implies ab >

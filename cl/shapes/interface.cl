@@ -1,10 +1,11 @@
 // interface: what every shape offers (shapes/NAME.cl for each row of shapes/list.h).
-//   BlockTest intersect_NAME(block, place, ray)       a ray's line against primitives of a block (NAME_blocks of Scene):
-//                                                     that in `place` in kernels of one lane, else all eight
-//   Surface surface_of_NAME(scene, ray, hit, active)  the surface where each active lane's ray hit one of them; the
-//                                                     other lanes get that of place 0
-// A block has rows of eight words, one for each primitive; its row `id` is OPAL_NONE in unused places, which come last
-// and which no ray hits. intersect_NAME may round t: surface_of_NAME may set a better one, as s.t.
+//   BlockTest intersect_NAME(block, place, ray)
+//       a ray's line against primitives of a block (NAME_blocks of Scene): in kernels of one lane that in `place`, in
+//       others all eight. Where a ray can meet a primitive twice, the first meeting after ray->tmin.
+//   Surface surface_of_NAME(scene, ray, hit, active)
+//       the surface where each active lane's ray hit; the other lanes get that of place 0. It may set a better t.
+// A block has rows of eight words, one for each primitive. Its row `id` is OPAL_NONE in unused places, which come last;
+// they hold what no ray hits, or repeat the first primitive.
 #include "core/lanes.cl"
 #include "shared/types.h"
 #if LANES == 1

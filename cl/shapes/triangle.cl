@@ -67,7 +67,8 @@ static Surface surface_of_triangle(const Scene *scene, Ray ray, Hit hit, mask ac
     // Indices come first: what they lead to is fetched while the rest is computed.
     uints triangle = triangle_id(scene, place), mesh = GATHER(uints, scene->triangles, triangle, .mesh);
     CornerNormals corners = corner_normals(scene, triangle);
-    v3 p0 = triangle_vertex(scene, place, 0), p1 = triangle_vertex(scene, place, 1), p2 = triangle_vertex(scene, place, 2);
+    v3 p0 = triangle_vertex(scene, place, 0), p1 = triangle_vertex(scene, place, 1);
+    v3 p2 = triangle_vertex(scene, place, 2);
     v3 e1 = v3_sub(p1, p0), e2 = v3_sub(p2, p0);
     v3 n = v3_cross(e1, e2);
     real length2 = v3_dot(n, n), inverse_length = rsqrt(length2);

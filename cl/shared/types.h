@@ -23,9 +23,9 @@ namespace opal {
 #define OPAL_BLOCK_BITS 0x0fffffffu
 
 // A node of the 8-wide tree: its children's boxes, one axis and side a row, and the children themselves: the index of a
-// node, or a leaf. Unused children come last; they are OPAL_NONE and have lo = +inf, hi = -inf,
-// which a slab test misses as long as it picks near and far by the direction's signs (sorting the two distances would
-// hit). The first node is the root.
+// node, or a leaf. Unused children come last; they are OPAL_NONE and have lo = +inf, hi = -inf, which a slab test
+// misses as long as it picks near and far by the direction's signs (sorting the two distances would hit). The first
+// node is the root.
 typedef struct {
     float lo[3][OPAL_WIDTH];
     float hi[3][OPAL_WIDTH];

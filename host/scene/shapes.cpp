@@ -44,9 +44,7 @@ Extent Parallelogram::extent() const {
     return extent;
 }
 
-Parallelogram Parallelogram::moved(const Transform &by) const {
-    return {by.point(origin), by.vector(u), by.vector(v)};
-}
+Parallelogram Parallelogram::moved(const Transform &by) const { return {by.point(origin), by.vector(u), by.vector(v)}; }
 
 std::string Parallelogram::text() const { return "parallelogram"; }
 

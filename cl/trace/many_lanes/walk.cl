@@ -1,8 +1,8 @@
 // many_lanes/walk: closest and any hit in the tree, for kernels that carry several lanes, as CPUs run them.
 //
 // The root's children are tested against all lanes at once. A lane that meets some of them walks on alone, with the
-// eight children of a node, or primitives of a leaf, in one vector. Two lanes are walked in turn: while one waits for memory or for
-// the end of a comparison, the other goes on.
+// eight children of a node or primitives of a leaf in one vector. Two lanes are walked in turn: while one waits for
+// memory or for the end of a comparison, the other goes on.
 #include "core/lanes.cl"
 #include "core/many_lanes/eight_wide.cl"
 #include "core/math.cl"

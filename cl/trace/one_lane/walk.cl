@@ -3,8 +3,8 @@
 // A GPU keeps a work-item's values in registers, of which it has few; an array that is indexed by a variable lies in
 // memory. So the ray is held in scalars, each level of the stack takes 8 bytes, and one walk serves both kinds of rays.
 // The loops are those of Aila and Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs" (while-while:
-// down to a leaf, then its primitives). Children are visited in the order of their distance, as many_lanes/walk.cl does,
-// so that both meet the same primitives.
+// down to a leaf, then its primitives). Children are visited in the order of their distance, as many_lanes/walk.cl
+// does, so that both meet the same primitives.
 #include "core/lanes.cl"
 #include "scene.cl"
 #include "shapes/dispatch.cl"
