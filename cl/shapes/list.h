@@ -1,13 +1,13 @@
-// The shapes that the tree's leaves hold: one row, one record of a block and one file cl/shapes/NAME.cl each.
+// The shapes that the tree's leaves hold: one row with the record of its blocks, and one file cl/shapes/NAME.cl each.
 #ifndef OPAL_SHAPE_LIST_H
 #define OPAL_SHAPE_LIST_H
 
 #include "shared/types.h"
 
 #define OPAL_SHAPES(SHAPE) \
-    SHAPE(triangle)
+    SHAPE(triangle, TriangleBlock)
 
-#define OPAL_SHAPE_ENUM(name) SHAPE_##name,
+#define OPAL_SHAPE_ENUM(name, Block) SHAPE_##name,
 enum { OPAL_SHAPES(OPAL_SHAPE_ENUM) SHAPE_COUNT };
 
 // The shapes' tables, as rows of OPAL_TABLES (scene_tables.h): NAME_blocks of each shape, and what else it needs.

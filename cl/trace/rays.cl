@@ -55,8 +55,8 @@ typedef struct {
     uint shape[LANES], place[LANES];
 } LaneHits;
 
-// Sets the hit of one lane but for t, u and v: the primitive in `place` of a leaf's block.
-static void set_primitive(LaneHits *hits, int lane, uint leaf, uint place) {
-    if (SHAPE_KINDS > 1) hits->shape[lane] = leaf_shape(leaf);
-    hits->place[lane] = leaf_block(leaf) * OPAL_WIDTH + place;
+// Sets the hit of one lane but for t, u and v: the primitive in `place` of the leaf `child`.
+static void set_primitive(LaneHits *hits, int lane, uint child, uint place) {
+    if (SHAPE_KINDS > 1) hits->shape[lane] = leaf_shape(child);
+    hits->place[lane] = leaf_block(child) * OPAL_WIDTH + place;
 }

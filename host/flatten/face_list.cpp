@@ -220,7 +220,7 @@ void build_tree(const TriangleSoup &soup, const std::vector<Face> &faces, FlatSc
     scene.sah_cost = sah_cost(bvh);
     scene.nodes = std::move(bvh.nodes);
     scene.triangle_blocks = std::move(bvh.blocks);
-#define OPAL_FILL_BLOCKS(name)                                                                                         \
+#define OPAL_FILL_BLOCKS(name, Block)                                                                                  \
     if (SHAPE_##name != SHAPE_triangle)                                                                                \
         scene.name##_blocks = fill_blocks(scene.name##_blocks, bvh.other_blocks[SHAPE_##name]);
     OPAL_SHAPES(OPAL_FILL_BLOCKS)

@@ -44,7 +44,7 @@ public:
     OPAL_EMITTERS(OPAL_DECIDE_EMITTER)
 #undef OPAL_DECIDE_EMITTER
 
-#define OPAL_DECIDE_SHAPE(name)                                                                                        \
+#define OPAL_DECIDE_SHAPE(name, Block)                                                                                 \
     Decision shape_##name() const { return shape(scene.name##_blocks.size()); }
     OPAL_SHAPES(OPAL_DECIDE_SHAPE)
 #undef OPAL_DECIDE_SHAPE
@@ -93,7 +93,7 @@ public:
     Decision tree() const {
         const std::size_t inside = scene.triangles.size() - scene.face_list_triangles;
         std::size_t others = 0; // blocks of other shapes
-#define OPAL_COUNT_BLOCKS(name) others += SHAPE_##name == SHAPE_triangle ? 0 : scene.name##_blocks.size();
+#define OPAL_COUNT_BLOCKS(name, Block) others += SHAPE_##name == SHAPE_triangle ? 0 : scene.name##_blocks.size();
         OPAL_SHAPES(OPAL_COUNT_BLOCKS)
 #undef OPAL_COUNT_BLOCKS
         if (inside == 0 && others == 0 && lanes >= FACE_LIST_LANES)

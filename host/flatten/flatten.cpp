@@ -115,7 +115,7 @@ void build_acceleration(TriangleSoup &soup, const std::vector<Point3f> &lights, 
 
 std::size_t FlatScene::tree_bytes() const {
     std::size_t bytes = nodes.size() * sizeof(BvhNode);
-#define OPAL_ADD_BLOCKS(name) bytes += name##_blocks.size() * sizeof(name##_blocks[0]);
+#define OPAL_ADD_BLOCKS(name, Block) bytes += name##_blocks.size() * sizeof(name##_blocks[0]);
     OPAL_SHAPES(OPAL_ADD_BLOCKS)
 #undef OPAL_ADD_BLOCKS
     return bytes;

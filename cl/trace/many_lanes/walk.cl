@@ -99,7 +99,7 @@ static mask8 intersect_children(global const BvhNode *node, const LaneRay *ray, 
 static void fetch_child(const Scene *scene, uint child) {
     if (!OPAL_HAS_large_tree) return;
     global const char *at =
-        child & OPAL_LEAF ? leaf_address(scene, child) : (global const char *)(scene->nodes + child);
+        child & OPAL_LEAF ? leaf_of(scene, child).block : (global const char *)(scene->nodes + child);
     for (uint line = 0; line < sizeof(TriangleBlock) / CACHE_LINE; line++) FETCH(at + line * CACHE_LINE);
 }
 
@@ -154,10 +154,10 @@ static ulong hits_of(BlockTest test, const LaneRay *ray) {
 }
 
 // Tests a leaf's primitives and keeps the nearest hit.
-static void test_leaf(const Scene *scene, const TreeRays *rays, uint leaf, ClosestWalk *w, LaneHits *hits) {
+static void test_leaf(const Scene *scene, const TreeRays *rays, uint child, ClosestWalk *w, LaneHits *hits) {
     add_count(scene, COUNTER_blocks, 1);
     LaneRay ray = load_ray(rays, w->at.lane, w->at.tmax);
-    BlockTest test = intersect_leaf(scene, leaf, 0, &ray);
+    BlockTest test = intersect_leaf(leaf_of(scene, child), 0, &ray);
     ulong met = hits_of(test, &ray);
     if (!met) return;
     real1 t[OPAL_WIDTH], reciprocal[OPAL_WIDTH], b[OPAL_WIDTH], c[OPAL_WIDTH];
@@ -172,7 +172,7 @@ static void test_leaf(const Scene *scene, const TreeRays *rays, uint leaf, Close
             hits->t[w->at.lane] = w->at.tmax = t[i];
             hits->u[w->at.lane] = b[i] * reciprocal[i];
             hits->v[w->at.lane] = c[i] * reciprocal[i];
-            set_primitive(hits, w->at.lane, leaf, i);
+            set_primitive(hits, w->at.lane, child, i);
             w->limit = key_of(t[i]) | KEY_PLACE;
         }
     }
@@ -265,7 +265,7 @@ static void step_any(const Scene *scene, const TreeRays *rays, uint *waiting, An
     if (child & OPAL_LEAF) {
         add_count(scene, COUNTER_blocks, 1);
         w->met = 0;
-        if (hits_of(intersect_leaf(scene, child, 0, &ray), &ray)) {
+        if (hits_of(intersect_leaf(leaf_of(scene, child), 0, &ray), &ray)) {
             *blocked |= 1u << w->at.lane;
             start_any(scene, rays, waiting, w);
         }

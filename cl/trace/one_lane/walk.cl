@@ -105,13 +105,14 @@ static void prepare_rays(TreeRays *w, const Scene *scene, Ray ray, mask active) 
 
 // Does the ray hit a primitive of the leaf before its tmax? The nearest one is kept in `hits`, unless `any` hit will
 // do.
-static bool hit_leaf(const Scene *scene, LaneRay *r, uint leaf, bool any, LaneHits *hits) {
+static bool hit_leaf(const Scene *scene, LaneRay *r, uint child, bool any, LaneHits *hits) {
     add_count(scene, COUNTER_blocks, 1);
+    Leaf leaf = leaf_of(scene, child);
     real1 tmax = r->tmax; // the same bound for all eight, as in many_lanes/
     bool hit = false;
 #pragma unroll 1
-    for (uint i = 0; i < OPAL_WIDTH && leaf_has(scene, leaf, i); i++) {
-        BlockTest test = intersect_leaf(scene, leaf, i, r);
+    for (uint i = 0; i < OPAL_WIDTH && leaf_has(leaf, i); i++) {
+        BlockTest test = intersect_leaf(leaf, i, r);
         if (!test.inside || !(test.distance > r->tmin * test.determinant)) continue;
         if (!(test.distance < tmax * test.determinant)) continue;
         if (any) return true;
@@ -121,7 +122,7 @@ static bool hit_leaf(const Scene *scene, LaneRay *r, uint leaf, bool any, LaneHi
         hits->t[0] = r->tmax = t;
         hits->u[0] = test.b * reciprocal;
         hits->v[0] = test.c * reciprocal;
-        set_primitive(hits, 0, leaf, i);
+        set_primitive(hits, 0, child, i);
     }
     return hit;
 }
