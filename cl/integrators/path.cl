@@ -7,6 +7,7 @@
 #include "emitters/dispatch.cl"
 #include "integrators/steps.cl"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "surface.cl"
 
 static mask path_step(const Scene *scene, Path *path, Hit hit, mask active) {

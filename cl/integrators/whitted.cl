@@ -6,6 +6,7 @@
 #include "emitters/dispatch.cl"
 #include "integrators/steps.cl"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "surface.cl"
 
 #define WHITTED_SURVIVAL R(0.95)

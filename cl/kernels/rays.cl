@@ -13,6 +13,7 @@
 #include "kernels/sample_columns.cl"
 #include "kernels/rays_list.h"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "shared/counters.h"
 #include "shared/types.h"
 #include "surface.cl"
@@ -113,12 +114,11 @@ kernel void closest_hits(SCENE_PARAMETERS, global const float *rays, global floa
         Ray ray = get_ray(rays, stride, base);
         Hit hit = closest_hit(&scene, ray, active);
         mask active_hit = is_hit(hit) & active;
-        uints id = triangle_id(&scene, uints_pick(active_hit, hit.slot, (uints)(0)));
         Surface s = surface_at(&scene, ray, hit, active_hit);
         put(hits, TRACE_T, stride, base, active_hit ? s.t : hit.t);
         put(hits, TRACE_U, stride, base, s.u);
         put(hits, TRACE_V, stride, base, s.v);
-        put_uints(hits, TRACE_TRIANGLE, stride, base, uints_pick(active_hit, id, (uints)(OPAL_NONE)));
+        put_uints(hits, TRACE_TRIANGLE, stride, base, uints_pick(active_hit, s.primitive, (uints)(OPAL_NONE)));
     }
     put_counters(tests, counters);
 }

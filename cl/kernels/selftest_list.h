@@ -4,6 +4,7 @@
 
 #include "bsdfs/list.h"
 #include "emitters/list.h"
+#include "shapes/list.h"
 #include "shared/types.h"
 
 // Records whose sizes, and members whose offsets, must be the same on both sides.

@@ -44,6 +44,11 @@ public:
     OPAL_EMITTERS(OPAL_DECIDE_EMITTER)
 #undef OPAL_DECIDE_EMITTER
 
+#define OPAL_DECIDE_SHAPE(name, Block)                                                                                 \
+    Decision shape_##name() const { return shape(scene.name##_blocks.size()); }
+    OPAL_SHAPES(OPAL_DECIDE_SHAPE)
+#undef OPAL_DECIDE_SHAPE
+
     Decision bsdf(uint kind) const {
         if (unlit)
             return {false, "this integrator asks no BSDF"};
@@ -65,6 +70,8 @@ public:
         return counted(std::size_t(std::count_if(scene.emitters.begin(), scene.emitters.end(), has)),
                        scene.emitters.size(), "emitter", "emitters");
     }
+
+    static Decision shape(std::size_t blocks) { return {blocks > 0, plural(blocks, "block", "blocks")}; }
 
     Decision many_emitters() const {
         if (unlit)
@@ -89,15 +96,18 @@ public:
 
     Decision tree() const {
         const std::size_t inside = scene.triangles.size() - scene.face_list_triangles;
-        if (inside == 0 && lanes >= FACE_LIST_LANES)
+        std::size_t others = 0; // blocks of other shapes
+#define OPAL_COUNT_BLOCKS(name, Block) others += SHAPE_##name == SHAPE_triangle ? 0 : scene.name##_blocks.size();
+        OPAL_SHAPES(OPAL_COUNT_BLOCKS)
+#undef OPAL_COUNT_BLOCKS
+        if (inside == 0 && others == 0 && lanes >= FACE_LIST_LANES)
             return {false, scene.triangles.empty() ? "there are no triangles" : "all triangles are listed"};
-        return {true, plural(inside, "triangle", "triangles")};
+        return {true, plural(inside, "triangle", "triangles") + (others ? " and other shapes" : "")};
     }
 
     Decision large_tree() const {
-        const std::size_t bytes = scene.nodes.size() * sizeof(BvhNode) + scene.blocks.size() * sizeof(TriangleBlock);
-        return {tree().on && bytes > large_tree_bytes,
-                fmt::format("{:.1f} MiB of nodes and triangles", double(bytes) / (1 << 20))};
+        return {tree().on && scene.tree_bytes() > large_tree_bytes,
+                fmt::format("{:.1f} MiB of nodes and blocks", double(scene.tree_bytes()) / (1 << 20))};
     }
 
     Decision wide_filter() const {

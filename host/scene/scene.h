@@ -5,13 +5,13 @@
 #include "base/math.h"
 #include "emitters/list.h"
 #include "scene/parameters.h"
+#include "scene/shapes.h"
 #include "scene/strategy.h"
 #include "shared/types.h"
 
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 namespace opal {
@@ -45,22 +45,9 @@ struct Bsdf {
     template <class Record> Record as() const { return record_of<Record>(words); } // is<Record>() must hold
 };
 
-struct TriangleMesh {
-    std::vector<Vec3> positions; // world space
-    std::vector<Vec3> normals;   // world space, unit; may be empty
-    struct Corner {
-        unsigned position, normal;
-    };                                            // indices; normal OPAL_NONE: the geometric normal
-    std::vector<std::array<Corner, 3>> triangles; // degenerate ones already dropped
-};
-
-struct Parallelogram {
-    Vec3 origin, u, v; // world space; front side u x v
-};
-
 struct Mesh {
     std::string name; // file name or given name
-    std::variant<TriangleMesh, Parallelogram> shape;
+    Shape shape;
     Bsdf bsdf;
     std::optional<Color> radiance; // emitted by its area emitter, W / (m^2 sr)
     SourcePlace place;

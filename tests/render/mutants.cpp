@@ -85,7 +85,7 @@ const std::vector<Control> lights = {
     {{"simple by the distance", "integrators/simple.cl", "cosine / distance2", "cosine * rsqrt(distance2)"},
      "point light",
      check_point_light},
-    {{"one corner's normal taken twice", "surface.cl", "v3_mad(vertex_normal(scene, corners.index[1]), u,",
+    {{"one corner's normal taken twice", "shapes/triangle.cl", "v3_mad(vertex_normal(scene, corners.index[1]), u,",
       "v3_mad(vertex_normal(scene, corners.index[2]), u,"},
      "normals",
      check_smooth_normals},
