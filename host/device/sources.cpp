@@ -140,7 +140,7 @@ std::string program_text(const Features &features, const BuildOptions &options, 
     text += fmt::format("#define OPAL_HAS_" #name " {}\n", int(features[FEATURE_##name]));
     OPAL_FEATURES
 #undef OPAL_FEATURE_ROW
-#define OPAL_AXIS_DEFINE(axis, help)                                                                                   \
+#define OPAL_AXIS_DEFINE(axis, needs, help)                                                                            \
     text += fmt::format("#define OPAL_AXIS_" #axis " {}\n", features.axes[AXIS_##axis]);
     OPAL_AXES(OPAL_AXIS_DEFINE)
 #undef OPAL_AXIS_DEFINE

@@ -23,14 +23,7 @@ constexpr std::size_t large_tree_bytes = 4 << 20;
 class Decider {
 public:
     Decider(const SceneDescription &from, const FlatScene &flat, int width)
-        : description(from), scene(flat), lanes(width) {
-        const int integrator = description.strategy[AXIS_integrator];
-        unlit = integrator == CHOICE_integrator_normals || integrator == CHOICE_integrator_ao ||
-                integrator == CHOICE_integrator_simple;
-        bsdf_sampling_only =
-            (integrator == CHOICE_integrator_direct_lighting || integrator == CHOICE_integrator_path) &&
-            description.strategy[AXIS_lighting] == CHOICE_lighting_bsdf;
-    }
+        : description(from), scene(flat), lanes(width), integrator(integrator_of(from.strategy)) {}
 
 #define OPAL_DECIDE_BSDF(name)                                                                                         \
     Decision bsdf_##name() const { return bsdf(BSDF_##name); }
@@ -43,7 +36,7 @@ public:
 #undef OPAL_DECIDE_EMITTER
 
     Decision bsdf(uint kind) const {
-        if (unlit)
+        if (!integrator.has(ASKS_BSDFS))
             return {false, "this integrator asks no BSDF"};
         const auto has = [&](const MeshRecord &mesh) { return scene.bsdfs[mesh.bsdf].kind == kind; };
         return counted(std::size_t(std::count_if(scene.meshes.begin(), scene.meshes.end(), has)), scene.meshes.size(),
@@ -51,9 +44,9 @@ public:
     }
 
     Decision emitter(uint kind) const {
-        if (unlit)
+        if (!integrator.has(ASKS_LIGHTS))
             return {false, "this integrator asks no emitter"};
-        if (kind == EMITTER_point && bsdf_sampling_only)
+        if (kind == EMITTER_point && !samples_emitters(description.strategy))
             return {false, "a BSDF sample never hits a point"};
         const auto has = [&](const EmitterRecord &emitter) { return emitter.kind == kind; };
         return counted(std::size_t(std::count_if(scene.emitters.begin(), scene.emitters.end(), has)),
@@ -61,7 +54,7 @@ public:
     }
 
     Decision many_emitters() const {
-        if (unlit)
+        if (!integrator.has(ASKS_LIGHTS))
             return {false, "this integrator asks no emitter"};
         return {scene.emitters.size() > 1, plural(scene.emitters.size(), "emitter", "emitters")};
     }
@@ -109,8 +102,7 @@ private:
     const SceneDescription &description;
     const FlatScene &scene;
     int lanes;
-    bool unlit;              // the integrator evaluates neither BSDFs nor emitters
-    bool bsdf_sampling_only; // no light sampling: emitters are found by BSDF samples alone
+    const IntegratorTraits &integrator;
 
     static Decision counted(std::size_t count, std::size_t all, const char *one, const char *many) {
         if (count == 0)
