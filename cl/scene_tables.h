@@ -4,12 +4,14 @@
 #define OPAL_SCENE_TABLES_H
 
 #include "bsdfs/list.h"
+#include "cameras/list.h"
 #include "emitters/list.h"
 #include "shared/types.h"
 
 // TABLE(record, name, shown): an array of records; `shown` is what messages call it. The order is that of the
 // parameters.
 #define OPAL_TABLES(TABLE) \
+    TABLE(CameraRecord, cameras, "cameras")                     /* one */ \
     TABLE(BvhNode, nodes, "nodes")                              /* none: no tree */ \
     TABLE(TriangleBlock, blocks, "blocks") \
     TABLE(Triangle, triangles, "triangles") \

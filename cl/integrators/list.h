@@ -5,11 +5,11 @@
 
 // What an integrator asks of a scene, and what it can do with light.
 enum {
-    ASKS_BSDFS = 1,      // evaluates or samples the materials of surfaces
-    ASKS_LIGHTS = 2,     // finds the scene's emitters: without the axis `lighting`, by emitter sampling alone
-    ASKS_OWN_LIGHT = 4,  // needs the light that its XML describes (SimpleLight)
-    FOLLOWS_PATHS = 8,   // goes on from diffuse surfaces by BSDF samples, whatever `lighting` says
-    ONE_SAMPLE_MIS = 16  // can take one of both samples (--mis one-sample), as no path goes on from it
+    OPAL_ASKS_BSDFS = 1,      // evaluates or samples the materials of surfaces
+    OPAL_ASKS_LIGHTS = 2,     // finds the scene's emitters: without the axis `lighting`, by emitter sampling alone
+    OPAL_ASKS_OWN_LIGHT = 4,  // needs the light that its XML describes (SimpleLight)
+    OPAL_FOLLOWS_PATHS = 8,   // goes on from diffuse surfaces by BSDF samples, whatever `lighting` says
+    OPAL_ONE_SAMPLE_MIS = 16  // can take one of both samples (--mis one-sample), as no path goes on from it
 };
 
 // An axis that the integrator reads: its choices change the estimator. All integrators read `sampler`.
@@ -21,12 +21,12 @@ enum {
 #define OPAL_INTEGRATORS(INTEGRATOR, with) \
     INTEGRATOR(with, normals, 0, 0, "shading normals as colours") \
     INTEGRATOR(with, ao, 0, OPAL_READS(hemisphere), "ambient occlusion, unbounded") \
-    INTEGRATOR(with, simple, ASKS_OWN_LIGHT, 0, "one point light, no bounces") \
-    INTEGRATOR(with, whitted, ASKS_BSDFS | ASKS_LIGHTS, OPAL_READS_LIGHTS, \
+    INTEGRATOR(with, simple, OPAL_ASKS_OWN_LIGHT, 0, "one point light, no bounces") \
+    INTEGRATOR(with, whitted, OPAL_ASKS_BSDFS | OPAL_ASKS_LIGHTS, OPAL_READS_LIGHTS, \
                "direct light by emitter sampling, specular surfaces followed") \
-    INTEGRATOR(with, direct_lighting, ASKS_BSDFS | ASKS_LIGHTS | ONE_SAMPLE_MIS, OPAL_READS_LIGHTING, \
+    INTEGRATOR(with, direct_lighting, OPAL_ASKS_BSDFS | OPAL_ASKS_LIGHTS | OPAL_ONE_SAMPLE_MIS, OPAL_READS_LIGHTING, \
                "one bounce of direct light") \
-    INTEGRATOR(with, path, ASKS_BSDFS | ASKS_LIGHTS | FOLLOWS_PATHS, OPAL_READS_LIGHTING | OPAL_READS(rr), \
-               "full path tracing")
+    INTEGRATOR(with, path, OPAL_ASKS_BSDFS | OPAL_ASKS_LIGHTS | OPAL_FOLLOWS_PATHS, \
+               OPAL_READS_LIGHTING | OPAL_READS(rr), "full path tracing")
 
 #endif

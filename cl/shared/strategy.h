@@ -10,25 +10,25 @@
 // What a strategy and a scene must have for an axis to matter, beside an integrator that reads the axis. The host finds
 // it in strategies/combinations.cpp.
 enum {
-    NEEDS_MIS = 1,                // both kinds of samples
-    NEEDS_EMITTER_SAMPLES = 2,
-    NEEDS_MANY_EMITTERS = 4,
-    NEEDS_MESH_LIGHTS = 8,        // a light of several triangles
-    NEEDS_DIFFUSE_SAMPLES = 16,   // BSDF samples of diffuse surfaces, or directions that the integrator draws itself
-    NEEDS_ROULETTE = 32           // paths that are long enough for it
+    OPAL_NEEDS_MIS = 1,              // both kinds of samples
+    OPAL_NEEDS_EMITTER_SAMPLES = 2,
+    OPAL_NEEDS_MANY_EMITTERS = 4,
+    OPAL_NEEDS_MESH_LIGHTS = 8,      // a light of several triangles
+    OPAL_NEEDS_DIFFUSE_SAMPLES = 16, // BSDF samples of diffuse surfaces, or directions that the integrator draws
+    OPAL_NEEDS_ROULETTE = 32         // paths that are long enough for it
 };
 
 // AXIS(name, needs, help); its choices are the rows of OPAL_CHOICES_name.
 #define OPAL_AXES(AXIS) \
     AXIS(integrator, 0, "what the image estimates") \
     AXIS(lighting, 0, "how light is found: by BSDF sampling, by emitter sampling, or by both with MIS") \
-    AXIS(mis, NEEDS_MIS, "how MIS weighs its two samples (Veach 1997, section 9.2)") \
-    AXIS(hemisphere, NEEDS_DIFFUSE_SAMPLES, "how a diffuse surface draws directions") \
-    AXIS(emitter_choice, NEEDS_EMITTER_SAMPLES | NEEDS_MANY_EMITTERS, \
+    AXIS(mis, OPAL_NEEDS_MIS, "how MIS weighs its two samples (Veach 1997, section 9.2)") \
+    AXIS(hemisphere, OPAL_NEEDS_DIFFUSE_SAMPLES, "how a diffuse surface draws directions") \
+    AXIS(emitter_choice, OPAL_NEEDS_EMITTER_SAMPLES | OPAL_NEEDS_MANY_EMITTERS, \
          "how an emitter is chosen for light sampling") \
-    AXIS(triangle_choice, NEEDS_EMITTER_SAMPLES | NEEDS_MESH_LIGHTS, \
+    AXIS(triangle_choice, OPAL_NEEDS_EMITTER_SAMPLES | OPAL_NEEDS_MESH_LIGHTS, \
          "how a triangle is chosen within a mesh light") \
-    AXIS(rr, NEEDS_ROULETTE, "Russian roulette: how the probability to survive is found") \
+    AXIS(rr, OPAL_NEEDS_ROULETTE, "Russian roulette: how the probability to survive is found") \
     AXIS(sampler, 0, "where the random numbers come from")
 
 // CHOICE(axis, name, help).

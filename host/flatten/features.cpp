@@ -35,8 +35,13 @@ public:
     OPAL_EMITTERS(OPAL_DECIDE_EMITTER)
 #undef OPAL_DECIDE_EMITTER
 
+#define OPAL_DECIDE_CAMERA(name, record, traits)                                                                       \
+    Decision camera_##name() const { return camera(CAMERA_##name); }
+    OPAL_CAMERAS(OPAL_DECIDE_CAMERA)
+#undef OPAL_DECIDE_CAMERA
+
     Decision bsdf(uint kind) const {
-        if (!integrator.has(ASKS_BSDFS))
+        if (!integrator.has(OPAL_ASKS_BSDFS))
             return {false, "this integrator asks no BSDF"};
         const auto has = [&](const MeshRecord &mesh) { return scene.bsdfs[mesh.bsdf].kind == kind; };
         return counted(std::size_t(std::count_if(scene.meshes.begin(), scene.meshes.end(), has)), scene.meshes.size(),
@@ -44,7 +49,7 @@ public:
     }
 
     Decision emitter(uint kind) const {
-        if (!integrator.has(ASKS_LIGHTS))
+        if (!integrator.has(OPAL_ASKS_LIGHTS))
             return {false, "this integrator asks no emitter"};
         if (kind == EMITTER_point && !samples_emitters(description.strategy))
             return {false, "a BSDF sample never hits a point"};
@@ -53,8 +58,12 @@ public:
                        scene.emitters.size(), "emitter", "emitters");
     }
 
+    Decision camera(uint kind) const {
+        return {description.camera.kind == kind, fmt::format("the camera is {}", camera_name(description.camera.kind))};
+    }
+
     Decision many_emitters() const {
-        if (!integrator.has(ASKS_LIGHTS))
+        if (!integrator.has(OPAL_ASKS_LIGHTS))
             return {false, "this integrator asks no emitter"};
         return {scene.emitters.size() > 1, plural(scene.emitters.size(), "emitter", "emitters")};
     }

@@ -22,4 +22,27 @@ const char *emitter_name(unsigned kind) {
 }
 #undef OPAL_NAME
 
+const char *camera_name(unsigned kind) {
+#define OPAL_CAMERA_NAME(name, record, traits) #name,
+    static const char *const names[] = {OPAL_CAMERAS(OPAL_CAMERA_NAME)};
+#undef OPAL_CAMERA_NAME
+    return names[kind];
+}
+
+std::string camera_text(const Camera &camera) {
+    std::string text = camera_name(camera.kind);
+    switch (camera.kind) {
+#define OPAL_NUMBER_TEXT(name, xml, initial, valid, rule, meaning) text += fmt::format(", " xml " {:g}", own.name);
+#define OPAL_CAMERA_TEXT(name, record, traits)                                                                         \
+    case CAMERA_##name: {                                                                                              \
+        [[maybe_unused]] const auto &own = camera.name;                                                                \
+        OPAL_CAMERA_##name(OPAL_NUMBER_TEXT) break;                                                                    \
+    }
+        OPAL_CAMERAS(OPAL_CAMERA_TEXT)
+#undef OPAL_CAMERA_TEXT
+#undef OPAL_NUMBER_TEXT
+    }
+    return text;
+}
+
 } // namespace opal

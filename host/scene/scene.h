@@ -4,6 +4,7 @@
 #include "base/color.h"
 #include "base/math.h"
 #include "bsdfs/list.h"
+#include "cameras/list.h"
 #include "emitters/list.h"
 #include "scene/strategy.h"
 #include "shared/types.h"
@@ -26,6 +27,7 @@ struct SourcePlace {
 // Names of kinds, as the XML gives them: "diffuse", "mesh".
 const char *bsdf_name(unsigned kind);    // kind: BSDF_*
 const char *emitter_name(unsigned kind); // kind: EMITTER_*
+const char *camera_name(unsigned kind);  // kind: CAMERA_*
 
 struct Bsdf {
     BsdfRecord record{}; // kind and parameters, ready for the device
@@ -66,13 +68,23 @@ struct Filter {
 };
 
 struct Camera {
+    uint kind = CAMERA_perspective;
+    // The parameters of each kind, as `perspective.fov`, with the defaults of cl/cameras/list.h.
+#define OPAL_CAMERA_NUMBER(name, xml, initial, valid, rule, meaning) double name = initial;
+#define OPAL_CAMERA_NUMBERS(name, record, traits)                                                                      \
+    struct {                                                                                                           \
+        OPAL_CAMERA_##name(OPAL_CAMERA_NUMBER)                                                                         \
+    } name;
+    OPAL_CAMERAS(OPAL_CAMERA_NUMBERS)
+#undef OPAL_CAMERA_NUMBERS
+#undef OPAL_CAMERA_NUMBER
     Transform to_world;
     int width = 1280, height = 720;
-    double fov = 30;                         // full horizontal angle, degrees
     double near_clip = 1e-4, far_clip = 1e4; // planar, camera space
     Filter filter;
     SourcePlace place;
 };
+std::string camera_text(const Camera &camera); // its kind and parameters: "perspective, fov 30"
 
 struct SimpleLight { // the one light of integrator `simple`
     Vec3 position;

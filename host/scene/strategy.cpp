@@ -32,18 +32,18 @@ std::span<const IntegratorTraits> integrators() {
 }
 
 bool can_take_one_sample(const Strategy &strategy) {
-    return integrator_of(strategy).has(ONE_SAMPLE_MIS) && strategy[AXIS_lighting] == CHOICE_lighting_mis;
+    return integrator_of(strategy).has(OPAL_ONE_SAMPLE_MIS) && strategy[AXIS_lighting] == CHOICE_lighting_mis;
 }
 
 bool has_hemisphere(const Strategy &strategy) {
     const IntegratorTraits &integrator = integrator_of(strategy);
-    return strategy[AXIS_hemisphere] != CHOICE_hemisphere_material || integrator.has(ASKS_BSDFS) ||
+    return strategy[AXIS_hemisphere] != CHOICE_hemisphere_material || integrator.has(OPAL_ASKS_BSDFS) ||
            !integrator.reads(AXIS_hemisphere);
 }
 
 bool samples_emitters(const Strategy &strategy) {
     const IntegratorTraits &integrator = integrator_of(strategy);
-    return integrator.has(ASKS_LIGHTS) &&
+    return integrator.has(OPAL_ASKS_LIGHTS) &&
            !(integrator.reads(AXIS_lighting) && strategy[AXIS_lighting] == CHOICE_lighting_bsdf);
 }
 

@@ -19,7 +19,7 @@ struct Axis {
     std::string name; // as typed: "emitter-choice"
     std::string help;
     std::span<const Choice> choices; // index = CHOICE_* value
-    unsigned needs = 0;              // NEEDS_*: what must be there for it to matter
+    unsigned needs = 0;              // OPAL_NEEDS_*: what must be there for it to matter
 };
 
 std::span<const Axis> axes();                     // index = AXIS_* value
@@ -28,7 +28,7 @@ int find_choice(int axis, std::string_view name); // throws Error "unknown mis '
 // A row of cl/integrators/list.h.
 struct IntegratorTraits {
     const char *name; // as the list spells it: "direct_lighting"
-    unsigned asks;    // ASKS_BSDFS and so on
+    unsigned asks;    // OPAL_ASKS_BSDFS and so on
     unsigned axes;    // a bit for each axis that it reads, beside `sampler`, which all read
 
     bool has(unsigned trait) const { return (asks & trait) != 0; }
@@ -71,7 +71,8 @@ bool can_take_one_sample(const Strategy &strategy);
 // Whether directions are drawn: an integrator that asks no material needs another --hemisphere than `material`.
 bool has_hemisphere(const Strategy &strategy);
 
-// Whether points on emitters are sampled. An integrator that ASKS_LIGHTS finds them by BSDF samples alone otherwise.
+// Whether points on emitters are sampled. An integrator that OPAL_ASKS_LIGHTS finds them by BSDF samples alone
+// otherwise.
 bool samples_emitters(const Strategy &strategy);
 
 } // namespace opal

@@ -38,8 +38,8 @@ std::string names_of_integrators(unsigned trait) {
 void check_mis(const Strategy &strategy) {
     if (strategy[AXIS_mis] != CHOICE_mis_one_sample)
         return;
-    if (!integrator_of(strategy).has(ONE_SAMPLE_MIS))
-        refuse("mis one-sample without integrator " + names_of_integrators(ONE_SAMPLE_MIS),
+    if (!integrator_of(strategy).has(OPAL_ONE_SAMPLE_MIS))
+        refuse("mis one-sample without integrator " + names_of_integrators(OPAL_ONE_SAMPLE_MIS),
                "one sample of either kind cannot be counted in and go on as a path; available: balance, power");
     if (!can_take_one_sample(strategy))
         refuse("mis one-sample without lighting mis", "there is only one kind of sample, and nothing to choose from");
@@ -48,7 +48,7 @@ void check_mis(const Strategy &strategy) {
 void check_lighting(const SceneDescription &scene) {
     const Strategy &strategy = scene.strategy;
     const IntegratorTraits &integrator = integrator_of(strategy);
-    if (!integrator.has(ASKS_LIGHTS))
+    if (!integrator.has(OPAL_ASKS_LIGHTS))
         return;
     if (!integrator.reads(AXIS_lighting) && strategy[AXIS_lighting] != CHOICE_lighting_emitter)
         refuse(fmt::format("integrator {} without lighting emitter", integrator.name),
@@ -71,7 +71,7 @@ void check_strategy(const SceneDescription &scene) {
     if (!has_hemisphere(strategy))
         refuse(fmt::format("integrator {} with hemisphere material", integrator.name),
                "it asks no material; available: uniform, cosine");
-    if (integrator.has(ASKS_OWN_LIGHT) && scene.simple_light.energy == Color{})
+    if (integrator.has(OPAL_ASKS_OWN_LIGHT) && scene.simple_light.energy == Color{})
         refuse(fmt::format("integrator {}", integrator.name),
                "the scene gives it no light: its integrator has no 'position' and 'energy'");
     if (integrator.reads(AXIS_rr) && strategy[AXIS_rr] == CHOICE_rr_off && strategy.max_depth == no_limit)

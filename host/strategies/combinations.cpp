@@ -74,18 +74,18 @@ private:
         return integrator_.reads(axis) && (axes()[axis].needs & ~met_needs(strategy)) == 0;
     }
 
-    // What the scene and the strategy have: NEEDS_*.
+    // What the scene and the strategy have: OPAL_NEEDS_*.
     unsigned met_needs(const Strategy &strategy) const {
         const bool diffuse_samples =
-            !integrator_.has(ASKS_BSDFS) ||
-            (diffuse_ && (integrator_.has(FOLLOWS_PATHS) || strategy[AXIS_lighting] != CHOICE_lighting_emitter));
+            !integrator_.has(OPAL_ASKS_BSDFS) ||
+            (diffuse_ && (integrator_.has(OPAL_FOLLOWS_PATHS) || strategy[AXIS_lighting] != CHOICE_lighting_emitter));
         const std::pair<unsigned, bool> needs[] = {
-            {NEEDS_MIS, strategy[AXIS_lighting] == CHOICE_lighting_mis},
-            {NEEDS_EMITTER_SAMPLES, samples_emitters(strategy)},
-            {NEEDS_MANY_EMITTERS, many_emitters_},
-            {NEEDS_MESH_LIGHTS, light_triangles_},
-            {NEEDS_DIFFUSE_SAMPLES, diffuse_samples},
-            {NEEDS_ROULETTE, strategy.max_depth > strategy.rr_depth},
+            {OPAL_NEEDS_MIS, strategy[AXIS_lighting] == CHOICE_lighting_mis},
+            {OPAL_NEEDS_EMITTER_SAMPLES, samples_emitters(strategy)},
+            {OPAL_NEEDS_MANY_EMITTERS, many_emitters_},
+            {OPAL_NEEDS_MESH_LIGHTS, light_triangles_},
+            {OPAL_NEEDS_DIFFUSE_SAMPLES, diffuse_samples},
+            {OPAL_NEEDS_ROULETTE, strategy.max_depth > strategy.rr_depth},
         };
         unsigned met = 0;
         for (const auto &[need, is_met] : needs)

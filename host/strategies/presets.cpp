@@ -36,7 +36,7 @@ bool is_for(const PresetRow &row, const IntegratorTraits &integrator) {
         for (int axis = 0; axis < AXIS_COUNT; axis++)
             if (part.starts_with(axes()[axis].name + "=") && !integrator.reads(axis))
                 return false;
-    return integrator.has(ONE_SAMPLE_MIS) || !row.name.ends_with("mis=one-sample");
+    return integrator.has(OPAL_ONE_SAMPLE_MIS) || !row.name.ends_with("mis=one-sample");
 }
 
 class CandidateList {

@@ -60,7 +60,7 @@ TEST_CASE("an integrator's row says which axes it reads, and its own name is a t
         CHECK(integrator.reads(AXIS_sampler));
         CHECK_FALSE(integrator.reads(AXIS_integrator));
         if (integrator.reads(AXIS_emitter_choice) || integrator.reads(AXIS_lighting))
-            CHECK(integrator.has(ASKS_LIGHTS));
+            CHECK(integrator.has(OPAL_ASKS_LIGHTS));
     }
     CHECK(integrators()[CHOICE_integrator_path].reads(AXIS_rr));
     CHECK_FALSE(integrators()[CHOICE_integrator_direct_lighting].reads(AXIS_rr));

@@ -22,7 +22,7 @@ void choose_filter(SceneDescription &scene) {
 }
 
 bool has_light(const SceneDescription &scene) {
-    return !integrator_of(scene.strategy).has(ASKS_LIGHTS) || !scene.point_lights.empty() ||
+    return !integrator_of(scene.strategy).has(OPAL_ASKS_LIGHTS) || !scene.point_lights.empty() ||
            std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh &mesh) { return mesh.radiance; });
 }
 
