@@ -21,7 +21,8 @@ static v2 film_offset(const Scene *scene, Sampler s) { return draw(scene, s, (ui
 
 // The sample's pair of numbers for the lens; 0 where no camera of the kernel has one.
 static v2 lens_numbers(const Scene *scene, Sampler s) {
-    return CAMERAS_WITH_LENS > 0 ? draw(scene, s, segment_dimension((uints)(0), DIM_LENS)) : v2_of((real)(0), (real)(0));
+    if (CAMERAS_WITH_LENS == 0) return v2_of((real)(0), (real)(0));
+    return draw(scene, s, segment_dimension((uints)(0), DIM_LENS));
 }
 
 // The ray from `origin` along x left + y up + forward: unit direction, clipped by the planar near and far distances.

@@ -4,6 +4,7 @@
 #define OPAL_CAMERA_LIST_H
 
 #include "shared/glue.h"
+#include "shared/parameters.h"
 
 // Traits of a kind, as bits.
 enum {
@@ -15,10 +16,10 @@ enum {
 #define OPAL_CAMERAS(CAMERA) \
     CAMERA(perspective, PerspectiveCamera, OPAL_ONE_ORIGIN)
 
-// The parameters of a kind as its XML gives them: NUMBER(name, XML name, default, valid, rule, meaning). `valid` says
-// which values it may have, and `rule` the same in words.
-#define OPAL_CAMERA_perspective(NUMBER) \
-    NUMBER(fov, "fov", 30, fov > 0 && fov < 180, "must lie between 0 and 180 degrees", "full horizontal angle, degrees")
+// The parameters of a kind, rows of shared/parameters.h. All are numbers in world units; the host reads them, and fills
+// the kind's record below.
+#define OPAL_CAMERA_perspective(PARAMETER) \
+    PARAMETER(NUMBER, fov, "fov", 30, INSIDE(0, 180), "full horizontal angle, degrees")
 
 #define OPAL_CAMERA_ENUM(name, record, traits) CAMERA_##name,
 enum { OPAL_CAMERAS(OPAL_CAMERA_ENUM) CAMERA_COUNT };

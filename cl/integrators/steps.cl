@@ -96,7 +96,7 @@ static LightSample sample_light(const Scene *scene, const Path *path, Surface s,
     real inverse_distance = rsqrt(v3_dot(to_light, to_light));
     v3 wo = to_local(s.frame, v3_scale(to_light, inverse_distance));
     mask front = light.discrete | (v3_dot(light.shading_normal, to_light) < 0);
-    active = active & front & (wo.z > 0) & (inverse_distance < FAR);
+    active = active & front & bsdf_is_lit_from(scene, s.bsdf, wo) & (inverse_distance < FAR);
     if (!ANY(active)) return sample;
 
     // 1 / pdf of wo, solid angle measure (of a point light 1 / distance^2): cosine / distance^2 turns the area measure
@@ -104,7 +104,7 @@ static LightSample sample_light(const Scene *scene, const Path *path, Surface s,
     real cosine = light.discrete ? (real)(1) : fabs(v3_dot(light.normal, to_light)) * inverse_distance;
     real inverse_pdf = cosine * square(inverse_distance) * light.inverse_pdf / emitter_probability(scene, id);
     real bsdf_pdf;
-    v3 f = bsdf_eval(scene, s.bsdf, s.wi, wo, active, &bsdf_pdf);
+    v3 f = bsdf_eval(scene, s.bsdf, v2_of(s.u, s.v), s.wi, wo, active, &bsdf_pdf);
     if (CHOSEN(scene, lighting, mis)) {
         real weight = mis_weight(scene, light.discrete ? (real)(0) : bsdf_pdf * inverse_pdf);
         inverse_pdf = weight * inverse_pdf;
@@ -138,7 +138,8 @@ static v3 visible_light(const Scene *scene, LightSample sample) {
 // Draws the path's next segment by the BSDF. Returns the active lanes whose path still carries something.
 static mask scatter(const Scene *scene, Path *path, Surface s, mask active) {
     v2 lobe = path_draw(scene, path, DIM_LOBE);
-    BsdfSample sample = bsdf_sample(scene, s.bsdf, s.wi, path_draw(scene, path, DIM_BSDF), lobe.x, active);
+    BsdfSample sample =
+        bsdf_sample(scene, s.bsdf, v2_of(s.u, s.v), s.wi, path_draw(scene, path, DIM_BSDF), lobe.x, active);
     mask broken = active & !is_finite(sample.weight);
     if (ANY(broken)) { // the path ends, and the film counts it
         path->radiance = v3_pick(broken, sample.weight, path->radiance);

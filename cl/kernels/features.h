@@ -8,7 +8,7 @@
 #include "cameras/list.h"
 #include "emitters/list.h"
 
-#define OPAL_BSDF_FEATURE(name) OPAL_FEATURE_ROW(bsdf_##name, "bsdf_" #name)
+#define OPAL_BSDF_FEATURE(name, traits) OPAL_FEATURE_ROW(bsdf_##name, "bsdf_" #name)
 #define OPAL_EMITTER_FEATURE(name) OPAL_FEATURE_ROW(emitter_##name, "emitter_" #name)
 #define OPAL_CAMERA_FEATURE(name, record, traits) OPAL_FEATURE_ROW(camera_##name, "camera_" #name)
 

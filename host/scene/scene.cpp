@@ -10,12 +10,19 @@ std::string SourcePlace::text() const {
     return column == 0 ? fmt::format("{}:{}", file, line) : fmt::format("{}:{}:{}", file, line, column);
 }
 
-#define OPAL_NAME(name) #name,
 const char *bsdf_name(unsigned kind) {
-    static const char *const names[] = {OPAL_BSDFS(OPAL_NAME)};
+#define OPAL_BSDF_NAME(name, traits) #name,
+    static const char *const names[] = {OPAL_BSDFS(OPAL_BSDF_NAME)};
     return names[kind];
 }
 
+unsigned bsdf_traits(unsigned kind) {
+#define OPAL_BSDF_TRAITS(name, traits) traits,
+    static const unsigned all[] = {OPAL_BSDFS(OPAL_BSDF_TRAITS)};
+    return all[kind];
+}
+
+#define OPAL_NAME(name) #name,
 const char *emitter_name(unsigned kind) {
     static const char *const names[] = {OPAL_EMITTERS(OPAL_NAME)};
     return names[kind];
@@ -32,7 +39,7 @@ const char *camera_name(unsigned kind) {
 std::string camera_text(const Camera &camera) {
     std::string text = camera_name(camera.kind);
     switch (camera.kind) {
-#define OPAL_NUMBER_TEXT(name, xml, initial, valid, rule, meaning) text += fmt::format(", " xml " {:g}", own.name);
+#define OPAL_NUMBER_TEXT(type, name, xml, initial, range, meaning) text += fmt::format(", " xml " {:g}", own.name);
 #define OPAL_CAMERA_TEXT(name, record, traits)                                                                         \
     case CAMERA_##name: {                                                                                              \
         [[maybe_unused]] const auto &own = camera.name;                                                                \

@@ -3,9 +3,9 @@
 
 #include "base/color.h"
 #include "base/math.h"
-#include "bsdfs/list.h"
 #include "cameras/list.h"
 #include "emitters/list.h"
+#include "scene/parameters.h"
 #include "scene/strategy.h"
 #include "shared/types.h"
 
@@ -26,12 +26,21 @@ struct SourcePlace {
 
 // Names of kinds, as the XML gives them: "diffuse", "mesh".
 const char *bsdf_name(unsigned kind);    // kind: BSDF_*
+unsigned bsdf_traits(unsigned kind);     // OPAL_SMOOTH and so on, as bits
 const char *emitter_name(unsigned kind); // kind: EMITTER_*
 const char *camera_name(unsigned kind);  // kind: CAMERA_*
 
+// A material: the record of its kind, ready for the device. By default a grey diffuse one.
 struct Bsdf {
-    BsdfRecord record{}; // kind and parameters, ready for the device
+    std::vector<uint> words; // of a bsdf_NAME_record
     SourcePlace place;
+
+    Bsdf() : Bsdf(bsdf_diffuse_record{}) {}
+    template <class Record> Bsdf(const Record &record) : words(words_of(record)) {}
+
+    uint kind() const { return words[0]; } // BSDF_*
+    template <class Record> bool is() const { return kind() == Record{}.kind; }
+    template <class Record> Record as() const { return record_of<Record>(words); } // is<Record>() must hold
 };
 
 struct TriangleMesh {
@@ -70,7 +79,7 @@ struct Filter {
 struct Camera {
     uint kind = CAMERA_perspective;
     // The parameters of each kind, as `perspective.fov`, with the defaults of cl/cameras/list.h.
-#define OPAL_CAMERA_NUMBER(name, xml, initial, valid, rule, meaning) double name = initial;
+#define OPAL_CAMERA_NUMBER(type, name, xml, initial, range, meaning) double name = initial;
 #define OPAL_CAMERA_NUMBERS(name, record, traits)                                                                      \
     struct {                                                                                                           \
         OPAL_CAMERA_##name(OPAL_CAMERA_NUMBER)                                                                         \

@@ -121,6 +121,7 @@ const std::vector<Room> floors = {
     {"bsdfs/list.h", {"shared"}},
     {"emitters/list.h", {"shared"}},
     {"cameras/list.h", {"shared"}},
+    {"textures/list.h", {"shared"}},
     {"scene_tables.h", {"shared", "bsdfs/list.h", "emitters/list.h", "cameras/list.h"}},
     {"core", {}},
     {"scene.cl", {"shared", "scene_tables.h", "core"}},
@@ -128,7 +129,9 @@ const std::vector<Room> floors = {
     {"surface.cl", {"shared", "core", "scene.cl"}},
     {"cameras", {"cameras/list.h", "core", "scene.cl"}},
     {"film", {"shared", "core", "scene.cl", "cameras"}},
-    {"bsdfs", {"bsdfs/list.h", "core", "scene.cl"}},
+    {"textures", {"shared", "textures/list.h", "core", "scene.cl"}},
+    {"parameters.cl", {"shared", "core", "scene.cl", "textures"}},
+    {"bsdfs", {"shared", "bsdfs/list.h", "core", "scene.cl", "parameters.cl"}},
     {"emitters", {"emitters/list.h", "core", "scene.cl", "surface.cl"}},
     {"integrators", {"shared", "core", "scene.cl", "trace", "surface.cl", "bsdfs", "emitters"}},
     {"kernels",
@@ -147,17 +150,21 @@ Files device_files() {
     return files;
 }
 
+// The floor of a file below cl/. The headers of kinds, "bsdfs/phong.h", lie on that of their list.
 const Room *floor_of(const std::string &path) {
     const std::string folder = path.substr(0, path.find('/'));
     const auto named = [](const std::string &name) {
         const auto floor = std::find_if(floors.begin(), floors.end(), [&](const Room &f) { return f.name == name; });
         return floor == floors.end() ? nullptr : &*floor;
     };
-    return named(path) ? named(path) : named(folder);
+    const Room *list = path.ends_with(".h") ? named(folder + "/list.h") : nullptr;
+    return list ? list : named(path) ? named(path) : named(folder);
 }
 
 // What is wrong with one include of the device file `path`; empty: nothing.
 std::string floor_problem(const std::string &path, const std::string &included) {
+    if (included.ends_with("/*.cl"))
+        return floor_problem(path, room_of(included) + "/interface.cl");
     const Room *from = floor_of(path), *to = floor_of(included);
     if (!from || !to)
         return (from ? included : path) + " is not in the table of this test";

@@ -1,6 +1,8 @@
 // Parsers of the camera and of its reconstruction filter.
 #include "read/nori/parsers.h"
 
+#include <fmt/format.h>
+
 namespace opal {
 
 namespace {
@@ -38,16 +40,18 @@ struct CameraType {
     void (*parse)(Properties &, Camera &); // the parameters of the kind
 };
 
-#define OPAL_PARSE_NUMBER(name, xml, initial, valid, rule, meaning)                                                    \
-    {                                                                                                                  \
-        const double name = properties.number(xml).value_or(own.name);                                                 \
-        properties.check(valid, xml, rule);                                                                            \
-        own.name = name;                                                                                               \
-    }
+// Reads a number if it is given.
+void read_number(Properties &properties, const char *name, ValueRange range, const char *meaning, double &number) {
+    number = properties.number(name).value_or(number);
+    properties.check(range.holds(number), name, fmt::format("must be {}: {}", text_of(range), meaning));
+}
+
+#define OPAL_READ_NUMBER(type, name, xml, initial, range, meaning)                                                     \
+    read_number(properties, xml, range, meaning, own.name);
 #define OPAL_CAMERA_TYPE(name, record, traits)                                                                         \
     {#name, CAMERA_##name, []([[maybe_unused]] Properties &properties, [[maybe_unused]] Camera &camera) {              \
          [[maybe_unused]] auto &own = camera.name;                                                                     \
-         OPAL_CAMERA_##name(OPAL_PARSE_NUMBER)                                                                         \
+         OPAL_CAMERA_##name(OPAL_READ_NUMBER)                                                                          \
      }},
 const std::vector<CameraType> camera_types = {OPAL_CAMERAS(OPAL_CAMERA_TYPE)};
 
