@@ -4,6 +4,7 @@
 #define OPAL_SCENE_TABLES_H
 
 #include "bsdfs/list.h"
+#include "cameras/list.h"
 #include "emitters/list.h"
 #include "shapes/list.h"
 #include "shared/types.h"
@@ -11,6 +12,7 @@
 // TABLE(record, name, shown): an array of records; `shown` is what messages call it. The order is that of the
 // parameters.
 #define OPAL_TABLES(TABLE) \
+    TABLE(CameraRecord, cameras, "cameras")                     /* one */ \
     TABLE(BvhNode, nodes, "nodes")                              /* none: no tree */ \
     OPAL_SHAPE_TABLES(TABLE) \
     TABLE(float, normals, "normals")                            /* 3 each */ \

@@ -27,14 +27,11 @@ typedef struct {
 } Path;
 
 // Random numbers and words `dimension` of the path's present segment.
-static uints path_dimension(const Path *path, uint dimension) {
-    return 1u + (path->depth - 1u) * (uint)DIMS_A_SEGMENT + dimension;
-}
 static v2 path_draw(const Scene *scene, const Path *path, uint dimension) {
-    return draw(scene, path->sampler, path_dimension(path, dimension));
+    return draw(scene, path->sampler, segment_dimension(path->depth, dimension));
 }
 static u2 path_draw_bits(const Scene *scene, const Path *path, uint dimension) {
-    return draw_bits(scene, path->sampler, path_dimension(path, dimension));
+    return draw_bits(scene, path->sampler, segment_dimension(path->depth, dimension));
 }
 
 // Adds light to the path's radiance. Without roulette a path may have thousands of segments, and a plain sum would lose

@@ -2,7 +2,8 @@
 //
 // Rays and hits are columns (sample_columns.cl) of `stride` floats, a multiple of 16; kernels/rays_list.h names the
 // columns.
-#include "camera.cl"
+#include "cameras/dispatch.cl"
+#include "cameras/interface.cl"
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "core/rng.cl"
@@ -39,7 +40,7 @@ static Ray tiled_camera_ray(const Scene *scene, Sampler sampler, uints i) {
     uints tile = i / (uint)(RAYS_TILE * RAYS_TILE), row = tile / columns;
     uints x = (tile - row * columns) * RAYS_TILE + i % (uint)(RAYS_TILE);
     uints y = row * RAYS_TILE + i / (uint)(RAYS_TILE) % (uint)(RAYS_TILE);
-    return camera_ray(scene, x, y, draw(scene, sampler, (uints)(DIM_FILM)));
+    return camera_ray(scene, x, y, film_offset(scene, sampler), lens_numbers(scene, sampler));
 }
 
 // A cosine-distributed ray into the hemisphere around `normal`.

@@ -3,6 +3,7 @@
 #define OPAL_SELFTEST_LIST_H
 
 #include "bsdfs/list.h"
+#include "cameras/list.h"
 #include "emitters/list.h"
 #include "shapes/list.h"
 #include "shared/types.h"
@@ -10,11 +11,11 @@
 // Records whose sizes, and members whose offsets, must be the same on both sides.
 #define OPAL_RECORDS(RECORD) \
     RECORD(BvhNode) RECORD(TriangleBlock) RECORD(Triangle) RECORD(FaceRecord) RECORD(FaceRange) RECORD(MeshRecord) \
-    RECORD(Settings) RECORD(EmitterRecord) RECORD(LightTriangle)
+    RECORD(Settings) RECORD(CameraRecord) RECORD(EmitterRecord) RECORD(LightTriangle)
 #define OPAL_MEMBERS(MEMBER) \
     MEMBER(BvhNode, hi) MEMBER(BvhNode, child) MEMBER(TriangleBlock, id) MEMBER(Triangle, mesh) \
-    MEMBER(FaceRecord, corner) MEMBER(MeshRecord, emitter) MEMBER(Settings, camera_forward) \
-    MEMBER(Settings, far_clip) MEMBER(Settings, face_list_slot) MEMBER(Settings, rr_prob) \
+    MEMBER(FaceRecord, corner) MEMBER(MeshRecord, emitter) MEMBER(CameraRecord, forward) \
+    MEMBER(CameraRecord, own.perspective.tan_half_y) MEMBER(Settings, face_list_slot) MEMBER(Settings, rr_prob) \
     MEMBER(Settings, light_energy) MEMBER(Settings, filter_c) MEMBER(Settings, choices) \
     MEMBER(EmitterRecord, area) MEMBER(EmitterRecord, v) MEMBER(EmitterRecord, probability) MEMBER(EmitterRecord, other) \
     MEMBER(LightTriangle, inverse_pdf)

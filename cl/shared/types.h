@@ -59,10 +59,6 @@ enum { OPAL_FILTERS(OPAL_FILTER_ENUM) FILTER_COUNT };
 
 // All numbers of a scene that are no table. Positions are in the flattened scene's units.
 typedef struct {
-    float camera_origin[3];
-    float camera_left[3], camera_up[3], camera_forward[3]; // world-space columns of toWorld, without translation
-    float tan_half_x, tan_half_y;   // film half extents at distance 1
-    float near_clip, far_clip;      // along camera_forward, in camera space times FlatScene::scale
     uint width, height;             // pixels
     uint spp;                       // samples of a pixel in the whole render (the strata of --sampler stratified)
     uint seed;
@@ -82,7 +78,7 @@ typedef struct {
     float filter_b, filter_c;       // mitchell
     int choices[AXIS_COUNT];        // CHOICE_* of each axis; read by the general kernel only
 } Settings;
-OPAL_SIZE_CHECK(Settings, 196);
+OPAL_SIZE_CHECK(Settings, 132);
 
 #ifdef __cplusplus
 }

@@ -25,14 +25,7 @@ constexpr std::size_t large_tree_bytes = 4 << 20;
 class Decider {
 public:
     Decider(const SceneDescription &from, const FlatScene &flat, int width)
-        : description(from), scene(flat), lanes(width) {
-        const int integrator = description.strategy[AXIS_integrator];
-        unlit = integrator == CHOICE_integrator_normals || integrator == CHOICE_integrator_ao ||
-                integrator == CHOICE_integrator_simple;
-        bsdf_sampling_only =
-            (integrator == CHOICE_integrator_direct_lighting || integrator == CHOICE_integrator_path) &&
-            description.strategy[AXIS_lighting] == CHOICE_lighting_bsdf;
-    }
+        : description(from), scene(flat), lanes(width), integrator(integrator_of(from.strategy)) {}
 
 #define OPAL_DECIDE_BSDF(name, traits)                                                                                 \
     Decision bsdf_##name() const { return bsdf(BSDF_##name); }
@@ -48,9 +41,13 @@ public:
     Decision shape_##name() const { return shape(scene.name##_blocks.size()); }
     OPAL_SHAPES(OPAL_DECIDE_SHAPE)
 #undef OPAL_DECIDE_SHAPE
+#define OPAL_DECIDE_CAMERA(name, record, traits)                                                                       \
+    Decision camera_##name() const { return camera(CAMERA_##name); }
+    OPAL_CAMERAS(OPAL_DECIDE_CAMERA)
+#undef OPAL_DECIDE_CAMERA
 
     Decision bsdf(uint kind) const {
-        if (unlit)
+        if (!integrator.has(OPAL_ASKS_BSDFS))
             return {false, "this integrator asks no BSDF"};
         const auto has = [&](const MeshRecord &mesh) {
             bool found = false;
@@ -62,9 +59,9 @@ public:
     }
 
     Decision emitter(uint kind) const {
-        if (unlit)
+        if (!integrator.has(OPAL_ASKS_LIGHTS))
             return {false, "this integrator asks no emitter"};
-        if (!CAN_BE_MET(emitter_traits(kind)) && bsdf_sampling_only)
+        if (!CAN_BE_MET(emitter_traits(kind)) && !samples_emitters(description.strategy))
             return {false, fmt::format("a BSDF sample never hits a {} light", emitter_name(kind))};
         const auto has = [&](const EmitterRecord &emitter) { return emitter.kind == kind; };
         return counted(std::size_t(std::count_if(scene.emitters.begin(), scene.emitters.end(), has)),
@@ -72,9 +69,12 @@ public:
     }
 
     static Decision shape(std::size_t blocks) { return {blocks > 0, plural(blocks, "block", "blocks")}; }
+    Decision camera(uint kind) const {
+        return {description.camera.kind == kind, fmt::format("the camera is {}", camera_name(description.camera.kind))};
+    }
 
     Decision many_emitters() const {
-        if (unlit)
+        if (!integrator.has(OPAL_ASKS_LIGHTS))
             return {false, "this integrator asks no emitter"};
         return {scene.emitters.size() > 1, plural(scene.emitters.size(), "emitter", "emitters")};
     }
@@ -125,8 +125,7 @@ private:
     const SceneDescription &description;
     const FlatScene &scene;
     int lanes;
-    bool unlit;              // the integrator evaluates neither BSDFs nor emitters
-    bool bsdf_sampling_only; // no light sampling: emitters are found by BSDF samples alone
+    const IntegratorTraits &integrator;
 
     static Decision counted(std::size_t count, std::size_t all, const char *one, const char *many) {
         if (count == 0)

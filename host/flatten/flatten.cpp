@@ -1,3 +1,4 @@
+#include "flatten/camera.h"
 #include "flatten/distribution.h"
 #include "flatten/emitters.h"
 #include "flatten/face_list.h"
@@ -6,38 +7,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <map>
-#include <numbers>
 
 namespace opal {
 namespace {
 
-void store(Vec3 from, float (&to)[3]) {
-    for (int i = 0; i < 3; i++)
-        to[i] = float(from[i]);
-}
-
-// A distance as a float; one beyond the range of floats becomes the largest float.
-float to_distance(double d) { return float(std::min(d, double(std::numeric_limits<float>::max()))); }
-
-// Fills the perspective camera. The ray through the point (sx, sy) of the image, in [0, 1)^2 from its top left corner,
-// has the direction left (1 - 2 sx) tan_half_x + up (1 - 2 sy) tan_half_y + forward. These vectors are the columns of
-// toWorld divided by the length of the third one, `depth`: a point at depth z in camera space lies z * depth times that
-// direction away.
-void fill_camera(const Camera &camera, const Flattening &flattening, Settings &settings) {
-    const auto &rows = camera.to_world.rows;
-    const auto column = [&rows](int i) { return Vec3{rows[0][i], rows[1][i], rows[2][i]}; };
-    const double depth = length(column(2));
-    store((camera.to_world.point({}) - flattening.center) * flattening.scale, settings.camera_origin);
-    store(column(0) * (1 / depth), settings.camera_left);
-    store(column(1) * (1 / depth), settings.camera_up);
-    store(column(2) * (1 / depth), settings.camera_forward);
-    const double tangent = std::tan(camera.fov * (std::numbers::pi / 360));
-    settings.tan_half_x = float(tangent);
-    settings.tan_half_y = float(tangent * camera.height / camera.width);
-    settings.near_clip = to_distance(camera.near_clip * depth * flattening.scale);
-    settings.far_clip = to_distance(camera.far_clip * depth * flattening.scale);
+void fill_film(const Camera &camera, Settings &settings) {
     settings.width = uint(camera.width);
     settings.height = uint(camera.height);
     settings.filter = camera.filter.kind;
@@ -148,7 +123,8 @@ FlatScene flatten(const SceneDescription &description, int lanes) {
     const Flattening flattening = find_flattening(description);
     scene.center = flattening.center;
     scene.scale = flattening.scale;
-    fill_camera(description.camera, flattening, scene.settings);
+    scene.cameras.push_back(flatten_camera(description.camera, flattening));
+    fill_film(description.camera, scene.settings);
     fill_strategy(description, flattening, scene.settings);
     gather_bsdfs(description, scene);
     TriangleSoup soup = gather_primitives(description, flattening, scene);

@@ -3,6 +3,7 @@
 
 #include "base/color.h"
 #include "base/math.h"
+#include "cameras/list.h"
 #include "emitters/list.h"
 #include "scene/parameters.h"
 #include "scene/shapes.h"
@@ -28,6 +29,7 @@ const char *bsdf_name(unsigned kind);    // kind: BSDF_*
 unsigned bsdf_traits(unsigned kind);     // OPAL_SMOOTH and so on, as bits; 0 of a kind that leads to others
 const char *emitter_name(unsigned kind); // kind: EMITTER_*
 int emitter_traits(unsigned kind);       // SURFACE_LIGHT | ...
+const char *camera_name(unsigned kind);  // kind: CAMERA_*
 
 // A material: the record of its kind, ready for the device but for the places of the BSDFs that it leads to. By default
 // a grey diffuse one.
@@ -66,13 +68,23 @@ struct Filter {
 };
 
 struct Camera {
+    uint kind = CAMERA_perspective;
+    // The parameters of each kind, as `perspective.fov`, with the defaults of cl/cameras/list.h.
+#define OPAL_CAMERA_NUMBER(type, name, xml, initial, range, meaning) double name = initial;
+#define OPAL_CAMERA_NUMBERS(name, record, traits)                                                                      \
+    struct {                                                                                                           \
+        OPAL_CAMERA_##name(OPAL_CAMERA_NUMBER)                                                                         \
+    } name;
+    OPAL_CAMERAS(OPAL_CAMERA_NUMBERS)
+#undef OPAL_CAMERA_NUMBERS
+#undef OPAL_CAMERA_NUMBER
     Transform to_world;
     int width = 1280, height = 720;
-    double fov = 30;                         // full horizontal angle, degrees
     double near_clip = 1e-4, far_clip = 1e4; // planar, camera space
     Filter filter;
     SourcePlace place;
 };
+std::string camera_text(const Camera &camera); // its kind and parameters: "perspective, fov 30"
 
 struct SimpleLight { // the one light of integrator `simple`
     Vec3 position;

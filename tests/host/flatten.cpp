@@ -67,24 +67,26 @@ TEST_CASE("the camera's columns, film and clips", "[flatten]") {
     camera.to_world.rows = {{{-2, 0, 0, 1}, {0, 4, 0, 2}, {0, 0, 2, 3}, {0, 0, 0, 1}}}; // mirrored, stretched, moved
     camera.width = 400;
     camera.height = 100;
-    camera.fov = 90;
+    camera.perspective.fov = 90;
     camera.near_clip = 0.5;
     camera.far_clip = 1e300;
-    const Settings s = flatten(scene, 8).settings;
-    CHECK((s.camera_origin[0] == 0.25f && s.camera_origin[1] == 0.5f && s.camera_origin[2] == 0.75f));
-    CHECK((s.camera_left[0] == -1 && s.camera_up[1] == 2 && s.camera_forward[2] == 1));
-    CHECK(s.tan_half_x == Approx(1));
-    CHECK(s.tan_half_y == Approx(0.25));
-    CHECK(s.near_clip == 0.5f * 2 / 4);
-    CHECK(std::isfinite(s.far_clip));
-    CHECK((s.width == 400 && s.height == 100));
+    const FlatScene flat = flatten(scene, 8);
+    REQUIRE(flat.cameras.size() == 1);
+    const CameraRecord &record = flat.cameras[0];
+    CHECK((record.origin[0] == 0.25f && record.origin[1] == 0.5f && record.origin[2] == 0.75f));
+    CHECK((record.left[0] == -1 && record.up[1] == 2 && record.forward[2] == 1));
+    CHECK(record.own.perspective.tan_half_x == Approx(1));
+    CHECK(record.own.perspective.tan_half_y == Approx(0.25));
+    CHECK(record.near_clip == 0.5f * 2 / 4);
+    CHECK(std::isfinite(record.far_clip));
+    CHECK((flat.settings.width == 400 && flat.settings.height == 100));
 
     // The point at camera depth near_clip along a film direction, by both ways.
     const double sx = 0.1, sy = 0.7, x = (1 - 2 * sx) * 1, y = (1 - 2 * sy) * 0.25;
     const Vec3 world = Vec3{-2 * x, 4 * y, 2} * 0.5;
     for (int i = 0; i < 3; i++) {
-        const double d = s.camera_left[i] * x + s.camera_up[i] * y + s.camera_forward[i];
-        CHECK(s.near_clip * d == Approx(world[i] / 4));
+        const double d = record.left[i] * x + record.up[i] * y + record.forward[i];
+        CHECK(record.near_clip * d == Approx(world[i] / 4));
     }
 }
 

@@ -59,7 +59,7 @@ TEST_CASE_METHOD(LoadFixture, "defaults of everything are resolved", "[load]") {
     CHECK(scene.file == file());
     CHECK(scene.camera.width == 1280);
     CHECK(scene.camera.height == 720);
-    CHECK(scene.camera.fov == 30);
+    CHECK(scene.camera.perspective.fov == 30);
     CHECK(scene.camera.near_clip == 1e-4);
     CHECK(scene.camera.far_clip == 1e4);
     CHECK(scene.spp == 1);
@@ -339,7 +339,7 @@ TEST_CASE_METHOD(LoadFixture, "an unknown property fails, or warns if lenient", 
     std::string body = "<camera type='perspective'>\n  <float name='fow' value='30'/></camera>" + light;
     CHECK_THAT(error_in(body),
                Catch::StartsWith(":3:3: unknown property 'fow' of camera 'perspective'; did you mean 'fov'? "));
-    CHECK(load(body, {.lenient = true}).camera.fov == 30);
+    CHECK(load(body, {.lenient = true}).camera.perspective.fov == 30);
     CHECK_THAT(warnings().back(), Catch::StartsWith(file() + ":3:3: unknown property 'fow'"));
     CHECK_THAT(error_in("<float name='fov' value='30'/>" + camera),
                Catch::StartsWith(":2:1: unknown property 'fov' of <scene>"));

@@ -167,7 +167,9 @@ const std::vector<Control> films = {
       "int reach = (int)ceil(settings->filter_radius - 0.5f);", "int reach = 0;"},
      "filters",
      check_filters},
-    {{"the image mirrored", "camera.cl", "(1 - 2 * sx)", "(2 * sx - 1)"}, "filters", check_filters},
+    {{"the image mirrored", "cameras/perspective.cl", "(1 - 2 * film.x)", "(2 * film.x - 1)"},
+     "filters",
+     check_filters},
 };
 
 } // namespace
