@@ -75,16 +75,12 @@ kernel void warp_pdf(int which, float parameter, global const float *points, glo
 // A surface of a mesh in the plane z = 0, seen from wi, at uv = 0.
 static Surface flat_surface(const Scene *scene, uint mesh, float wi_x, float wi_y, float wi_z) {
     real zero = 0, one = 1;
-    Surface s;
-    s.p = v3_all(zero);
-    s.t = s.u = s.v = s.ray_offset = zero;
-    s.triangle = (uints)(0);
+    Surface s = no_surface();
     s.frame.s = v3_of(one, zero, zero);
     s.frame.t = v3_of(zero, one, zero);
     s.frame.n = s.normal = v3_of(zero, zero, one);
     s.wi = v3_of((real)(wi_x), (real)(wi_y), (real)(wi_z));
     s.bsdf = (uints)(scene->meshes[mesh].bsdf);
-    s.emitter = (uints)(OPAL_NONE);
     bsdf_open(scene, &s, ALL_LANES);
     return s;
 }
