@@ -39,7 +39,7 @@ public:
     OPAL_ALL_BSDFS(OPAL_DECIDE_BSDF)
 #undef OPAL_DECIDE_BSDF
 
-#define OPAL_DECIDE_EMITTER(name)                                                                                      \
+#define OPAL_DECIDE_EMITTER(name, traits)                                                                              \
     Decision emitter_##name() const { return emitter(EMITTER_##name); }
     OPAL_EMITTERS(OPAL_DECIDE_EMITTER)
 #undef OPAL_DECIDE_EMITTER
@@ -64,8 +64,8 @@ public:
     Decision emitter(uint kind) const {
         if (unlit)
             return {false, "this integrator asks no emitter"};
-        if (kind == EMITTER_point && bsdf_sampling_only)
-            return {false, "a BSDF sample never hits a point"};
+        if (!CAN_BE_MET(emitter_traits(kind)) && bsdf_sampling_only)
+            return {false, fmt::format("a BSDF sample never hits a {} light", emitter_name(kind))};
         const auto has = [&](const EmitterRecord &emitter) { return emitter.kind == kind; };
         return counted(std::size_t(std::count_if(scene.emitters.begin(), scene.emitters.end(), has)),
                        scene.emitters.size(), "emitter", "emitters");

@@ -132,7 +132,7 @@ const std::vector<Room> floors = {
     {"textures", {"shared", "textures/list.h", "core", "scene.cl"}},
     {"parameters.cl", {"shared", "core", "scene.cl", "textures"}},
     {"bsdfs", {"shared", "bsdfs/list.h", "core", "scene.cl", "surface.cl", "parameters.cl"}},
-    {"emitters", {"emitters/list.h", "core", "scene.cl", "surface.cl", "shapes"}},
+    {"emitters", {"shared", "emitters/list.h", "core", "scene.cl", "surface.cl", "shapes"}},
     {"integrators", {"shared", "core", "scene.cl", "surface.cl", "shapes", "trace", "bsdfs", "emitters"}},
     {"kernels",
      {"shared", "shapes/list.h", "bsdfs/list.h", "emitters/list.h", "core", "scene.cl", "surface.cl", "shapes", "trace",
