@@ -103,13 +103,12 @@ static LightSample sample_light(const Scene *scene, const Path *path, Surface s,
     // into it.
     real cosine = light.discrete ? (real)(1) : fabs(v3_dot(light.normal, to_light)) * inverse_distance;
     real inverse_pdf = cosine * square(inverse_distance) * light.inverse_pdf / emitter_probability(scene, id);
-    real bsdf_pdf;
-    v3 f = bsdf_eval(scene, s.bsdf, v2_of(s.u, s.v), s.wi, wo, active, &bsdf_pdf);
+    BsdfResponse bsdf = bsdf_respond(scene, s, wo, active, v2_of((real)(0), (real)(0)), (real)(0), NO_LANES);
     if (CHOSEN(scene, lighting, mis)) {
-        real weight = mis_weight(scene, light.discrete ? (real)(0) : bsdf_pdf * inverse_pdf);
+        real weight = mis_weight(scene, light.discrete ? (real)(0) : bsdf.pdf * inverse_pdf);
         inverse_pdf = weight * inverse_pdf;
     }
-    v3 light_in = v3_scale(v3_mul(f, emitter_radiance(scene, id)), wo.z * inverse_pdf);
+    v3 light_in = v3_scale(v3_mul(bsdf.f, emitter_radiance(scene, id)), wo.z * inverse_pdf);
     // Light that is not finite must reach the film, where it is counted.
     sample.active = active & ((v3_largest(light_in) > 0) | !is_finite(light_in));
     sample.radiance = v3_mul(path->throughput, light_in);
@@ -138,8 +137,7 @@ static v3 visible_light(const Scene *scene, LightSample sample) {
 // Draws the path's next segment by the BSDF. Returns the active lanes whose path still carries something.
 static mask scatter(const Scene *scene, Path *path, Surface s, mask active) {
     v2 lobe = path_draw(scene, path, DIM_LOBE);
-    BsdfSample sample =
-        bsdf_sample(scene, s.bsdf, v2_of(s.u, s.v), s.wi, path_draw(scene, path, DIM_BSDF), lobe.x, active);
+    BsdfSample sample = bsdf_sample(scene, s, path_draw(scene, path, DIM_BSDF), lobe.x, active);
     mask broken = active & !is_finite(sample.weight);
     if (ANY(broken)) { // the path ends, and the film counts it
         path->radiance = v3_pick(broken, sample.weight, path->radiance);

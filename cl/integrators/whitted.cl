@@ -15,6 +15,7 @@ static mask whitted_step(const Scene *scene, Path *path, Hit hit, mask active) {
     Surface s = surface_at(scene, path->ray, hit, active);
     path->radiance = v3_add(path->radiance, v3_mul(path->throughput, emitted(scene, path, s, active)));
     active = active & to_mask(path->depth < scene->settings->max_depth);
+    bsdf_open(scene, &s, active);
     mask specular = active & bsdf_is_discrete(scene, s.bsdf);
     LightSample light = sample_light(scene, path, s, active & !specular);
     path->radiance = v3_add(path->radiance, visible_light(scene, light));

@@ -29,7 +29,7 @@ constexpr ValueRange ABOVE(double least) { return {least, INFINITY, true}; }
 constexpr ValueRange BETWEEN(double least, double most) { return {least, most}; }
 constexpr ValueRange INSIDE(double least, double most) { return {least, most, true, true}; }
 
-enum class ParameterType { COLOR, NUMBER, FLAG };
+enum class ParameterType { COLOR, NUMBER, FLAG, BSDF };
 
 struct Parameter {
     ParameterType type;
