@@ -1,6 +1,6 @@
 // interface: what a camera offers, and what the camera of this kernel needs.
-//   Ray NAME_ray(camera, film, lens)   the ray through a point of the film; lens: a pair of random numbers, which
-//                                      cameras that draw a lens place on it
+//   Ray NAME_ray(camera, film, lens)   the ray through a point of the film, made by camera_ray_along; lens: a pair of
+//                                      random numbers, for cameras with the trait OPAL_DRAWS_LENS
 // The film is [0, 1]^2 with its origin at the top left. Camera space looks along +z, with +x to the left in the image.
 #include "cameras/list.h"
 #include "core/lanes.cl"

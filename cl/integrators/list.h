@@ -14,15 +14,16 @@ enum {
 
 // An axis that the integrator reads: its choices change the estimator. All integrators read `sampler`.
 #define OPAL_READS(axis) (1u << AXIS_##axis)
-#define OPAL_READS_LIGHTS (OPAL_READS(emitter_choice) | OPAL_READS(triangle_choice))
-#define OPAL_READS_LIGHTING (OPAL_READS_LIGHTS | OPAL_READS(lighting) | OPAL_READS(mis) | OPAL_READS(hemisphere))
+#define OPAL_READS_LIGHT_SAMPLING (OPAL_READS(emitter_choice) | OPAL_READS(triangle_choice))
+#define OPAL_READS_LIGHTING \
+    (OPAL_READS_LIGHT_SAMPLING | OPAL_READS(lighting) | OPAL_READS(mis) | OPAL_READS(hemisphere))
 
 // `with` is passed through to INTEGRATOR.
 #define OPAL_INTEGRATORS(INTEGRATOR, with) \
     INTEGRATOR(with, normals, 0, 0, "shading normals as colours") \
     INTEGRATOR(with, ao, 0, OPAL_READS(hemisphere), "ambient occlusion, unbounded") \
     INTEGRATOR(with, simple, OPAL_ASKS_OWN_LIGHT, 0, "one point light, no bounces") \
-    INTEGRATOR(with, whitted, OPAL_ASKS_BSDFS | OPAL_ASKS_LIGHTS, OPAL_READS_LIGHTS, \
+    INTEGRATOR(with, whitted, OPAL_ASKS_BSDFS | OPAL_ASKS_LIGHTS, OPAL_READS_LIGHT_SAMPLING, \
                "direct light by emitter sampling, specular surfaces followed") \
     INTEGRATOR(with, direct_lighting, OPAL_ASKS_BSDFS | OPAL_ASKS_LIGHTS | OPAL_ONE_SAMPLE_MIS, OPAL_READS_LIGHTING, \
                "one bounce of direct light") \

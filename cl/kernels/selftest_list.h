@@ -15,13 +15,15 @@
 #define OPAL_MEMBERS(MEMBER) \
     MEMBER(BvhNode, hi) MEMBER(BvhNode, child) MEMBER(TriangleBlock, id) MEMBER(Triangle, mesh) \
     MEMBER(FaceRecord, corner) MEMBER(MeshRecord, emitter) MEMBER(CameraRecord, forward) \
-    MEMBER(CameraRecord, own.perspective.tan_half_y) MEMBER(Settings, face_list_slot) MEMBER(Settings, rr_prob) \
+    MEMBER(CameraRecord, own) MEMBER(Settings, face_list_slot) MEMBER(Settings, rr_prob) \
     MEMBER(Settings, light_energy) MEMBER(Settings, filter_c) MEMBER(Settings, choices) \
     MEMBER(EmitterRecord, area) MEMBER(EmitterRecord, v) MEMBER(EmitterRecord, probability) MEMBER(EmitterRecord, other) \
     MEMBER(LightTriangle, inverse_pdf)
 
 // Says the layout of all records by the statements OPAL_SIZE(T) and OPAL_OFFSET(T, member), which either side defines.
-#define OPAL_LAYOUT OPAL_RECORDS(OPAL_SIZE) OPAL_MEMBERS(OPAL_OFFSET) OPAL_ALL_BSDFS(OPAL_BSDF_LAYOUT)
+#define OPAL_LAYOUT \
+    OPAL_RECORDS(OPAL_SIZE) OPAL_MEMBERS(OPAL_OFFSET) OPAL_ALL_BSDFS(OPAL_BSDF_LAYOUT) OPAL_CAMERAS(OPAL_CAMERA_LAYOUT)
+#define OPAL_CAMERA_LAYOUT(name, record, traits) OPAL_SIZE(record)
 #define OPAL_BSDF_LAYOUT(name, traits) \
     { \
         typedef bsdf_##name##_record Record; \

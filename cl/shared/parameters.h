@@ -7,7 +7,7 @@
 //   NUMBER   a number
 //   FLAG     true or false
 //   BSDF     another BSDF, by the first word of its record
-// A range is AT_LEAST(x), ABOVE(x), BETWEEN(x, y) with both ends, INSIDE(x, y) without, or ANY.
+// A range is AT_LEAST(x), ABOVE(x), BETWEEN(x, y) with both ends, INSIDE(x, y) without them, or ANY.
 // From the list come the record that host and device share (below), the lanes' struct and its reader
 // (parameters.cl), and on the host the reading of XML, the options of `opal warp`, and the manual
 // (host/scene/parameters.h).

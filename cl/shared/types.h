@@ -78,7 +78,7 @@ typedef struct {
     float filter_b, filter_c;       // mitchell
     int choices[AXIS_COUNT];        // CHOICE_* of each axis; read by the general kernel only
 } Settings;
-OPAL_SIZE_CHECK(Settings, 132);
+OPAL_SIZE_CHECK(Settings, 100 + 4 * AXIS_COUNT);
 
 #ifdef __cplusplus
 }

@@ -215,7 +215,8 @@ TEST_CASE_METHOD(LoadFixture, "camera values that make no sense fail at their pl
           ":4:1: property 'width': must be at least 1 pixel");
     CHECK_THAT(property_error("camera", "perspective", "<integer name='height' value='-5'/>"),
                Catch::StartsWith(":4:1: "));
-    CHECK_THAT(property_error("camera", "perspective", "<float name='fov' value='180'/>"), Catch::StartsWith(":4:1: "));
+    CHECK(property_error("camera", "perspective", "<float name='fov' value='180'/>") ==
+          ":4:1: property 'fov': must be above 0 and below 180: full horizontal angle, degrees");
     CHECK_THAT(property_error("camera", "perspective", "<float name='fov' value='0'/>"), Catch::StartsWith(":4:1: "));
     CHECK_THAT(property_error("camera", "perspective", "<float name='farClip' value='1e-5'/>"),
                Catch::StartsWith(":4:1: "));
