@@ -1,47 +1,98 @@
-// dispatch: points on emitters, their radiance and density, by the kind of each lane's emitter.
+// dispatch: directions to emitters, their radiance and density, by the kind of each lane's emitter.
 #include "core/lanes.cl"
+#include "core/math.cl"
 #include "core/rng.cl"
-#include "emitters/choice.cl"
-#include "emitters/interface.cl"
+#include "emitters/*.cl"
 #include "emitters/list.h"
-#include "emitters/mesh.cl"
-#include "emitters/parallelogram.cl"
-#include "emitters/point.cl"
 #include "scene.cl"
+#include "shared/types.h"
+#include "surface.cl"
 
-#define COUNT_EMITTER(name) +OPAL_HAS_emitter_##name
-enum { EMITTER_KINDS = 0 OPAL_EMITTERS(COUNT_EMITTER) }; // of this kernel
+#define COUNT_EMITTER(name, traits) +OPAL_HAS_emitter_##name
+#define COUNT_MET(name, traits) +(OPAL_HAS_emitter_##name && CAN_BE_MET(traits))
+#define COUNT_ENVIRONMENT(name, traits) +(OPAL_HAS_emitter_##name && IS_ENVIRONMENT(traits))
+#define COUNT_INFINITE(name, traits) +(OPAL_HAS_emitter_##name && ((traits) & INFINITE_LIGHT) != 0)
+enum { // kinds of this kernel
+    EMITTER_KINDS = 0 OPAL_EMITTERS(COUNT_EMITTER),
+    MET_KINDS = 0 OPAL_EMITTERS(COUNT_MET),                 // that a ray can meet
+    ENVIRONMENT_KINDS = 0 OPAL_EMITTERS(COUNT_ENVIRONMENT), // that a ray meets where it leaves the scene
+    INFINITE_KINDS = 0 OPAL_EMITTERS(COUNT_INFINITE),
+};
 
-// A point on the emitters `id`, by random numbers `point` in [0, 1) and random words `triangle`; zeros in lanes that
-// are not active.
-static EmitterSample emitter_sample(const Scene *scene, uints id, v2 point, u2 triangle, mask active) {
-    v3 zero = v3_all((real)(0));
-    EmitterSample s = {zero, zero, zero, (real)(0), (real)(0), NO_LANES};
-    uints kind = GATHER(uints, scene->emitters, id, .kind);
-#define SAMPLE_EMITTER(name) \
-    if (OPAL_HAS_emitter_##name) { \
-        mask m = EMITTER_KINDS == 1 ? active : active & to_mask(kind == EMITTER_##name); \
-        if (ANY(m)) s = emitter_sample_pick(m, emitter_##name##_sample(scene, id, point, triangle), s); \
-    }
-    OPAL_EMITTERS(SAMPLE_EMITTER)
-    return s;
+static uints emitter_kind(const Scene *scene, uints id) { return GATHER(uints, scene->emitters, id, .kind); }
+
+// The active lanes whose emitter is of that kind; kinds: how many there may be.
+static mask emitter_lanes(uints kind, uint wanted, int kinds, mask active) {
+    return kinds == 1 ? active : active & to_mask(kind == wanted);
 }
 
-// Radiance that the emitters `id` send, W / (m^2 sr), the same in all directions; of a point light the intensity, W /
-// sr.
-static v3 emitter_radiance(const Scene *scene, uints id) { return GATHER_V3(scene->emitters, id, .radiance); }
-
-// Density, area measure, with which light sampling finds a point on a triangle of an area light, the choices of emitter
-// and triangle included. `id` and `triangle` must be valid in all lanes; the density is that of active ones.
-static real emitter_area_pdf(const Scene *scene, uints id, uints triangle, mask active) {
-    real pdf = 0;
-    if (EMITTER_KINDS > OPAL_HAS_emitter_mesh) pdf = GATHER(real, scene->emitters, id, .inverse_area);
-    if (OPAL_HAS_emitter_mesh) {
-        uints kind = GATHER(uints, scene->emitters, id, .kind);
-        mask mesh = EMITTER_KINDS == 1 ? active : active & to_mask(kind == EMITTER_mesh);
-        uints place = triangle - GATHER(uints, scene->emitters, id, .first_triangle);
-        uints row = uints_pick(mesh, GATHER(uints, scene->emitters, id, .first) + place, (uints)(0));
-        pdf = mesh ? 1 / GATHER(real, scene->light_triangles, row, .inverse_pdf) : pdf;
+// A direction from `from` to the emitters `id`, by random numbers u in [0, 1) and random words `bits`.
+static LightSample emitter_sample(const Scene *scene, uints id, ReferencePoint from, v2 u, u2 bits, mask active) {
+    LightSample sample = no_light_sample();
+    uints kind = emitter_kind(scene, id);
+#define SAMPLE_EMITTER(name, traits) \
+    if (OPAL_HAS_emitter_##name) { \
+        mask m = emitter_lanes(kind, EMITTER_##name, EMITTER_KINDS, active); \
+        if (ANY(m)) { \
+            LightSample s = emitter_##name##_sample(scene, id, from, u, bits); \
+            s.active = s.active & m; \
+            s.discrete = ((traits) & DELTA_LIGHT) != 0 ? ALL_LANES : NO_LANES; \
+            s.infinite = ((traits) & INFINITE_LIGHT) != 0 ? ALL_LANES : NO_LANES; \
+            sample = EMITTER_KINDS == 1 ? s : light_sample_pick(m, s, sample); \
+        } \
     }
-    return pdf * emitter_probability(scene, id);
+    OPAL_EMITTERS(SAMPLE_EMITTER)
+    return sample;
+}
+
+// Radiance of the emitters `id`, W / (m^2 sr), that rays of direction d find: where they met the surface s, or where
+// they left the scene. 0 in lanes that are not active.
+static v3 emitter_radiance(const Scene *scene, uints id, v3 d, Surface s, mask active) {
+    v3 radiance = v3_all((real)(0));
+    uints kind = emitter_kind(scene, id);
+#define RADIANCE_OF_EMITTER(name, traits) \
+    if (OPAL_HAS_emitter_##name && CAN_BE_MET(traits)) { \
+        mask m = emitter_lanes(kind, EMITTER_##name, MET_KINDS, active); \
+        if (ANY(m)) radiance = v3_pick(m, emitter_##name##_radiance(scene, id, d, s), radiance); \
+    }
+    OPAL_EMITTERS(RADIANCE_OF_EMITTER)
+    return radiance;
+}
+
+// Density, solid angle measure, with which light sampling at `from` draws the direction d that met s, or that left the
+// scene, given the emitter. 0 in lanes that are not active.
+static real emitter_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, Surface s, mask active) {
+    real pdf = 0;
+    uints kind = emitter_kind(scene, id);
+#define PDF_OF_EMITTER(name, traits) \
+    if (OPAL_HAS_emitter_##name && CAN_BE_MET(traits)) { \
+        mask m = emitter_lanes(kind, EMITTER_##name, MET_KINDS, active); \
+        if (ANY(m)) pdf = m ? emitter_##name##_pdf(scene, id, from, d, s) : pdf; \
+    }
+    OPAL_EMITTERS(PDF_OF_EMITTER)
+    return pdf;
+}
+
+// The emitters that rays meet: that of the surface s, on its shading normal's side, where they hit one; else the
+// environment. Sets *met to the active lanes that meet one; the others' ids are valid.
+static uints emitter_met(const Scene *scene, Surface s, mask hit, mask active, mask *met) {
+    *met = active & hit & to_mask(s.emitter != OPAL_NONE) & (s.wi.z > 0);
+    uints id = s.emitter;
+    if (ENVIRONMENT_KINDS > 0) {
+        mask escaped = active & !hit;
+        *met = *met | escaped;
+        id = uints_pick(escaped, (uints)(0), id);
+    }
+    return OPAL_HAS_many_emitters ? uints_pick(*met, id, (uints)(0)) : (uints)(0);
+}
+
+// The shadow ray from the surface s to a light.
+static Ray shadow_ray(Surface s, LightSample light) {
+    v3 start = leave_surface(s, light.d), d = v3_sub(light.end, start);
+    Ray ray = {start, d, (real)(0), (real)(1)}; // 1: the light's own surface
+    if (INFINITE_KINDS > 0) {
+        ray.d = v3_pick(light.infinite, light.d, d);
+        ray.tmax = light.infinite ? (real)(FAR) : ray.tmax;
+    }
+    return ray;
 }

@@ -1,27 +1,54 @@
-// interface: what every emitter offers (emitters/NAME.cl for each row of emitters/list.h).
-//   EmitterSample emitter_NAME_sample(scene, id, point, triangle)   a point on the emitters `id`, one a lane
-// point: a pair of random numbers in [0, 1); triangle: a pair of random words, by which a mesh chooses a triangle.
+// interface: what every emitter offers (emitters/NAME.cl for each row of emitters/list.h), one a lane.
+//   LightSample emitter_NAME_sample(scene, id, from, u, bits)
+//                                          a direction from `from` to the emitters `id`
+//   v3   emitter_NAME_radiance(scene, id, d, s)
+//                                          radiance that a ray of direction d (unit) finds; 0 for delta lights
+//   real emitter_NAME_pdf(scene, id, from, d, s)
+//                                          density of _sample at d, solid angle measure, 1/sr; 0 for delta lights
+// u: a pair of random numbers in [0, 1); bits: a pair of random words, for choices among many. s: the surface that the
+// ray met; of lights that are infinitely far nothing.
 // Functions compute all lanes; their callers pick those that are meant.
 #include "core/lanes.cl"
+#include "core/math.cl"
+#include "scene.cl"
+#include "surface.cl"
 
-// A point on an emitter. Lengths are those of the flattened scene.
+// The point from which light is seen. Lengths are those of the flattened scene.
 typedef struct {
-    v3 p;              // the point
-    v3 normal;         // geometric normal there, unit; 0 for a point light
-    v3 shading_normal; // unit; light leaves on its side. 0 for a point light
-    real inverse_pdf;  // 1 / pdf of p, area measure, given the emitter; 1 for a point light
-    real ray_offset;   // how far above the surface shadow rays end (ray_offset_of); 0 for a point light
-    mask discrete;     // a point light: no direction hits it by chance
-} EmitterSample;
+    v3 p; // position
+    v3 n; // shading normal, unit; 0 in free space
+} ReferencePoint;
 
-static EmitterSample emitter_sample_pick(mask m, EmitterSample yes, EmitterSample no) {
-    EmitterSample s = {v3_pick(m, yes.p, no.p), v3_pick(m, yes.normal, no.normal),
-                       v3_pick(m, yes.shading_normal, no.shading_normal), m ? yes.inverse_pdf : no.inverse_pdf,
-                       m ? yes.ray_offset : no.ray_offset, m ? yes.discrete : no.discrete};
+static ReferencePoint reference_point(Surface s) {
+    ReferencePoint from = {s.p, s.frame.n};
+    return from;
+}
+
+// A direction from a reference point to a light.
+typedef struct {
+    v3 d;             // unit
+    real distance;    // of the light; FAR where it is infinitely far
+    v3 radiance;      // towards the reference point, W / (m^2 sr); of a delta light the irradiance across d, W / m^2
+    real inverse_pdf; // 1 / pdf of d, solid angle measure, given the light; of a delta light 1. The inverse survives
+                      // densities that overflow near a light.
+    v3 end;           // of the shadow ray; unset where the light is infinitely far
+    mask active;      // the light is seen from there unless something is between
+    mask discrete, infinite; // traits of the light (DELTA_LIGHT, INFINITE_LIGHT), which dispatch.cl sets
+} LightSample;
+
+static LightSample light_sample_of(v3 d, real distance, v3 radiance, real inverse_pdf, v3 end, mask active) {
+    LightSample s = {d, distance, radiance, inverse_pdf, end, active, NO_LANES, NO_LANES};
     return s;
 }
 
-// Where a shadow ray towards the light ends: above its surface, on the side that to_light comes from.
-static v3 shadow_ray_end(EmitterSample light, v3 to_light) {
-    return v3_mad(light.normal, copysign(light.ray_offset, -v3_dot(light.normal, to_light)), light.p);
+static LightSample no_light_sample() {
+    v3 zero = v3_all((real)(0));
+    return light_sample_of(zero, (real)(0), zero, (real)(0), zero, NO_LANES);
+}
+
+static LightSample light_sample_pick(mask m, LightSample yes, LightSample no) {
+    LightSample s = {v3_pick(m, yes.d, no.d), m ? yes.distance : no.distance, v3_pick(m, yes.radiance, no.radiance),
+                     m ? yes.inverse_pdf : no.inverse_pdf, v3_pick(m, yes.end, no.end), m ? yes.active : no.active,
+                     m ? yes.discrete : no.discrete, m ? yes.infinite : no.infinite};
+    return s;
 }

@@ -4,12 +4,23 @@
 
 #include "shared/glue.h"
 
-#define OPAL_EMITTERS(EMITTER) \
-    EMITTER(mesh)          /* a triangle mesh that emits */ \
-    EMITTER(parallelogram) /* a parallelogram that emits, sampled as one piece */ \
-    EMITTER(point)         /* a point, seen by light sampling only */
+// Traits, as bits.
+enum {
+    SURFACE_LIGHT = 1,  // a ray meets it on a surface, whose mesh names it
+    DELTA_LIGHT = 2,    // seen in one direction from each point: no ray meets it by chance
+    INFINITE_LIGHT = 4, // infinitely far: shadow rays have no end
+};
+#define CAN_BE_MET(traits) (((traits) & DELTA_LIGHT) == 0) // by a BSDF sample
+// Is it met by rays that leave the scene?
+#define IS_ENVIRONMENT(traits) (((traits) & (INFINITE_LIGHT | DELTA_LIGHT)) == INFINITE_LIGHT)
 
-#define OPAL_EMITTER_ENUM(name) EMITTER_##name,
+// EMITTER(name, traits)
+#define OPAL_EMITTERS(EMITTER) \
+    EMITTER(mesh, SURFACE_LIGHT)          /* a triangle mesh that emits */ \
+    EMITTER(parallelogram, SURFACE_LIGHT) /* a parallelogram that emits, sampled as one piece */ \
+    EMITTER(point, DELTA_LIGHT)           /* a point */
+
+#define OPAL_EMITTER_ENUM(name, traits) EMITTER_##name,
 enum { OPAL_EMITTERS(OPAL_EMITTER_ENUM) EMITTER_COUNT };
 
 #ifdef __cplusplus

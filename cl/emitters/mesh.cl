@@ -4,28 +4,37 @@
 #include "core/lanes.cl"
 #include "core/rng.cl"
 #include "emitters/alias_table.cl"
+#include "emitters/area_light.cl"
 #include "emitters/interface.cl"
 #include "scene.cl"
+#include "shapes/triangle.cl"
 #include "surface.cl"
 
-static EmitterSample emitter_mesh_sample(const Scene *scene, uints id, v2 point, u2 triangle) {
+static LightSample emitter_mesh_sample(const Scene *scene, uints id, ReferencePoint from, v2 u, u2 bits) {
     uints first = GATHER(uints, scene->emitters, id, .first), count = GATHER(uints, scene->emitters, id, .count), row;
-    ALIAS_ENTRY(scene, light_triangles, first, count, triangle, row)
+    ALIAS_ENTRY(scene, light_triangles, first, count, bits, row)
     uints slot = GATHER(uints, scene->light_triangles, row, .slot);
 
-    // Uniform on the triangle: the square folded along its diagonal keeps the strata of `point`.
-    mask folded = point.x + point.y > 1;
-    real u = folded ? 1 - point.x : point.x, v = folded ? 1 - point.y : point.y;
+    // Uniform on the triangle: the square folded along its diagonal keeps the strata of u.
+    mask folded = u.x + u.y > 1;
+    real b1 = folded ? 1 - u.x : u.x, b2 = folded ? 1 - u.y : u.y;
     v3 p0 = triangle_vertex(scene, slot, 0), p1 = triangle_vertex(scene, slot, 1), p2 = triangle_vertex(scene, slot, 2);
     v3 e1 = v3_sub(p1, p0), e2 = v3_sub(p2, p0);
-    v3 n = v3_cross(e1, e2);
+    v3 normal = v3_normalize(v3_cross(e1, e2));
+    v3 shading = shading_normal(scene, corner_normals(scene, triangle_id(scene, slot)), b1, b2, normal);
+    return sample_of_point(from, v3_mad(e1, b1, v3_mad(e2, b2, p0)), normal, shading,
+                           GATHER(real, scene->light_triangles, row, .inverse_pdf), ray_offset_of(p0, p1, p2),
+                           GATHER_V3(scene->emitters, id, .radiance));
+}
 
-    EmitterSample s;
-    s.p = v3_mad(e1, u, v3_mad(e2, v, p0));
-    s.normal = v3_normalize(n);
-    s.shading_normal = shading_normal(scene, corner_normals(scene, triangle_id(scene, slot)), u, v, s.normal);
-    s.inverse_pdf = GATHER(real, scene->light_triangles, row, .inverse_pdf);
-    s.ray_offset = ray_offset_of(p0, p1, p2);
-    s.discrete = NO_LANES;
-    return s;
+static v3 emitter_mesh_radiance(const Scene *scene, uints id, v3 d, Surface s) {
+    return GATHER_V3(scene->emitters, id, .radiance);
+}
+
+static real emitter_mesh_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, Surface s) {
+    uints place = s.primitive - GATHER(uints, scene->emitters, id, .first_triangle);
+    // The rows of other lanes' emitters may not exist.
+    uints row = uints_pick(to_mask(place < GATHER(uints, scene->emitters, id, .count)),
+                           GATHER(uints, scene->emitters, id, .first) + place, (uints)(0));
+    return pdf_of_hit(GATHER(real, scene->light_triangles, row, .inverse_pdf), d, s);
 }

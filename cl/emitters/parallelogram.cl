@@ -2,18 +2,24 @@
 //   <mesh type="parallelogram"> ... <emitter type="area"> <color name="radiance" value="40 40 40"/> </emitter> </mesh>
 #include "core/lanes.cl"
 #include "core/rng.cl"
+#include "emitters/area_light.cl"
 #include "emitters/interface.cl"
 #include "scene.cl"
 #include "surface.cl"
 
-static EmitterSample emitter_parallelogram_sample(const Scene *scene, uints id, v2 point, u2 triangle) {
-    v3 o = GATHER_V3(scene->emitters, id, .origin);
-    v3 u = GATHER_V3(scene->emitters, id, .u), v = GATHER_V3(scene->emitters, id, .v);
-    EmitterSample s;
-    s.p = v3_mad(u, point.x, v3_mad(v, point.y, o));
-    s.normal = s.shading_normal = GATHER_V3(scene->emitters, id, .normal);
-    s.inverse_pdf = GATHER(real, scene->emitters, id, .area);
-    s.ray_offset = ray_offset_of(o, v3_add(o, v3_add(u, v)), v3_add(o, u));
-    s.discrete = NO_LANES;
-    return s;
+static LightSample emitter_parallelogram_sample(const Scene *scene, uints id, ReferencePoint from, v2 u, u2 bits) {
+    v3 corner = GATHER_V3(scene->emitters, id, .origin);
+    v3 e1 = GATHER_V3(scene->emitters, id, .u), e2 = GATHER_V3(scene->emitters, id, .v);
+    v3 normal = GATHER_V3(scene->emitters, id, .normal);
+    real offset = ray_offset_of(corner, v3_add(corner, v3_add(e1, e2)), v3_add(corner, e1));
+    return sample_of_point(from, v3_mad(e1, u.x, v3_mad(e2, u.y, corner)), normal, normal,
+                           GATHER(real, scene->emitters, id, .area), offset, GATHER_V3(scene->emitters, id, .radiance));
+}
+
+static v3 emitter_parallelogram_radiance(const Scene *scene, uints id, v3 d, Surface s) {
+    return GATHER_V3(scene->emitters, id, .radiance);
+}
+
+static real emitter_parallelogram_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, Surface s) {
+    return pdf_of_hit(GATHER(real, scene->emitters, id, .area), d, s);
 }

@@ -6,19 +6,22 @@
 #include "bsdfs/dispatch.cl"
 #include "core/lanes.cl"
 #include "core/rng.cl"
+#include "emitters/dispatch.cl"
 #include "integrators/steps.cl"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "shared/types.h"
 #include "surface.cl"
 
 static mask direct_lighting_step(const Scene *scene, Path *path, Hit hit, mask active) {
-    active = active & is_hit(hit);
-    if (!ANY(active)) return active;
-    Surface s = surface_at(scene, path->ray, hit, active);
-    path->radiance = v3_add(path->radiance, v3_mul(path->throughput, emitted(scene, path, s, active)));
+    mask on_surface = active & is_hit(hit);
+    if (ENVIRONMENT_KINDS == 0 && !ANY(on_surface)) return on_surface;
+    Surface s = surface_at(scene, path->ray, hit, on_surface);
+    v3 met = light_met(scene, path, s, on_surface, active);
+    path->radiance = v3_add(path->radiance, v3_mul(path->throughput, met));
 
     // The first surface gathers direct light, unless it is a light.
-    active = active & to_mask(path->depth == 1u) & to_mask(s.emitter == OPAL_NONE) &
+    active = on_surface & to_mask(path->depth == 1u) & to_mask(s.emitter == OPAL_NONE) &
              to_mask(path->depth < scene->settings->max_depth);
     if (!ANY(active)) return active;
     bsdf_open(scene, &s, active);
@@ -32,8 +35,8 @@ static mask direct_lighting_step(const Scene *scene, Path *path, Hit hit, mask a
         path->throughput = v3_scale(path->throughput, discrete ? (real)(1) : 1 / light.probability);
     }
     if (CHOSEN(scene, lighting, bsdf)) by_light = NO_LANES;
-    LightSample light = sample_light(scene, path, s, by_light);
-    active = scatter(scene, path, s, by_bsdf);
-    path->radiance = v3_add(path->radiance, visible_light(scene, light));
+    DirectLight direct;
+    active = interact(scene, path, s, by_light, by_bsdf, &direct);
+    path->radiance = v3_add(path->radiance, visible_light(scene, direct));
     return active;
 }

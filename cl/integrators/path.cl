@@ -4,30 +4,30 @@
 #include "bsdfs/dispatch.cl"
 #include "core/lanes.cl"
 #include "core/rng.cl"
+#include "emitters/dispatch.cl"
 #include "integrators/steps.cl"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "surface.cl"
 
 static mask path_step(const Scene *scene, Path *path, Hit hit, mask active) {
-    active = active & is_hit(hit);
-    if (!ANY(active)) return active;
-    Surface s = surface_at(scene, path->ray, hit, active);
+    mask on_surface = active & is_hit(hit);
+    if (ENVIRONMENT_KINDS == 0 && !ANY(on_surface)) return on_surface;
+    Surface s = surface_at(scene, path->ray, hit, on_surface);
 
-    // Light that the ray hits
-    add_radiance(scene, path, v3_mul(path->throughput, emitted(scene, path, s, active)));
-    active = active & to_mask(path->depth < scene->settings->max_depth);
+    // Light that the ray meets
+    add_radiance(scene, path, v3_mul(path->throughput, light_met(scene, path, s, on_surface, active)));
+    active = on_surface & to_mask(path->depth < scene->settings->max_depth);
     if (!ANY(active)) return active;
 
-    // Light that is sampled
+    // Light that is sampled, and the next segment
     bsdf_open(scene, &s, active);
     mask by_light = CHOSEN(scene, lighting, bsdf) ? NO_LANES : active & !bsdf_is_discrete(scene, s.bsdf);
-    LightSample light = sample_light(scene, path, s, by_light);
-
-    // The next segment
     real u = path_draw(scene, path, DIM_LOBE).y;
-    active = scatter(scene, path, s, active);
+    DirectLight direct;
+    active = interact(scene, path, s, by_light, active, &direct);
     active = roulette(scene, path, active, u);
 
-    add_radiance(scene, path, visible_light(scene, light));
+    add_radiance(scene, path, visible_light(scene, direct));
     return active;
 }

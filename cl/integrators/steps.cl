@@ -19,6 +19,7 @@ typedef struct {
     v3 throughput, radiance;
     v3 lost;         // what rounding took from radiance (add_radiance)
     real pdf;        // density with which ray.d was drawn, solid angle measure
+    ReferencePoint from; // where it was drawn, for light sampling's density there
     real eta;        // product of the indices passed: throughput * eta^2 is free of refraction's scaling
     mask specular;   // camera ray or delta lobe: emission it hits counts in full
     uints depth;     // segments so far, this ray included
@@ -52,92 +53,80 @@ static real mis_weight(const Scene *scene, real ratio) {
     return 1 / (1 + (CHOSEN(scene, mis, power) ? ratio * ratio : ratio));
 }
 
-// Radiance that the surface emits towards wi, times the MIS weight of hitting it by a BSDF sample; 0 in lanes that are
-// not active.
-static v3 emitted(const Scene *scene, const Path *path, Surface s, mask active) {
+// Radiance of the lights that the path's rays meet, where they hit the surface s or, in lanes without a hit, leave the
+// scene; times the MIS weight of meeting it by a BSDF sample. 0 in lanes that are not active.
+static v3 light_met(const Scene *scene, const Path *path, Surface s, mask hit, mask active) {
     v3 none = v3_all((real)(0));
-    if (EMITTER_KINDS == 0) return none;
-    mask active_emitter = active & to_mask(s.emitter != OPAL_NONE) & (s.wi.z > 0);
-    if (CHOSEN(scene, lighting, emitter)) active_emitter = active_emitter & path->specular;
-    if (!ANY(active_emitter)) return none;
-    uints id = OPAL_HAS_many_emitters ? uints_pick(active_emitter, s.emitter, (uints)(0)) : (uints)(0);
-    v3 radiance = emitter_radiance(scene, id);
+    if (MET_KINDS == 0) return none;
+    mask met;
+    uints id = emitter_met(scene, s, hit, active, &met);
+    if (CHOSEN(scene, lighting, emitter)) met = met & path->specular;
+    if (!ANY(met)) return none;
+    v3 radiance = emitter_radiance(scene, id, path->ray.d, s, met);
     if (CHOSEN(scene, lighting, mis)) {
-        // Distance^2 / cosine turns the light's density from area into solid angle measure.
-        real cosine = fabs(v3_dot(s.normal, path->ray.d));
-        real area_pdf = emitter_area_pdf(scene, id, s.triangle, active_emitter);
-        real ratio = area_pdf * square(s.t) / (cosine * path->pdf);
+        real light_pdf = emitter_pdf(scene, id, path->from, path->ray.d, s, met);
+        real ratio = light_pdf * emitter_probability(scene, id, path->from) / path->pdf;
         radiance = v3_scale(radiance, path->specular ? (real)(1) : mis_weight(scene, ratio));
     }
-    return v3_pick(active_emitter, radiance, none);
+    return v3_pick(met, radiance, none);
 }
 
-// Direct light by one point on a light, until visible_light tests the shadow ray.
+// Samples one direction to one emitter as the light of surface s, before its BSDF is asked. Sets *wo to the direction
+// in the surface's frame. inverse_pdf includes the choice of the emitter.
+static LightSample sample_light(const Scene *scene, const Path *path, Surface s, mask active, v3 *wo) {
+    *wo = s.wi;
+    if (EMITTER_KINDS == 0 || !ANY(active)) return no_light_sample();
+    ReferencePoint from = reference_point(s);
+    EmitterChoice choice = emitter_choose(scene, from, path_draw_bits(scene, path, DIM_EMITTER));
+    LightSample light = emitter_sample(scene, choice.id, from, path_draw(scene, path, DIM_LIGHT),
+                                       path_draw_bits(scene, path, DIM_TRIANGLE), active);
+    *wo = to_local(s.frame, light.d);
+    light.inverse_pdf = light.inverse_pdf / choice.probability;
+    light.active = light.active & bsdf_is_lit_from(scene, s.bsdf, *wo);
+    return light;
+}
+
+// Direct light by one light sample, until visible_light tests the shadow ray.
 typedef struct {
     v3 radiance;     // throughput and MIS weight included
     Ray shadow;
-    mask active;     // the lanes that have such a point
-} LightSample;
+    mask active;     // the lanes that have such a sample
+} DirectLight;
 
-// Samples one point on one emitter as the light of surface s. Visibility is tested later, by visible_light, so that a
-// processor works at this and at scatter at the same time.
-static LightSample sample_light(const Scene *scene, const Path *path, Surface s, mask active) {
-    LightSample sample;
-    sample.radiance = sample.shadow.o = sample.shadow.d = v3_all((real)(0));
-    sample.shadow.tmin = 0;
-    sample.shadow.tmax = 1; // the light's surface
-    sample.active = NO_LANES;
-    if (EMITTER_KINDS == 0 || !ANY(active)) return sample;
-    uints id = emitter_choose(scene, path_draw_bits(scene, path, DIM_EMITTER));
-    EmitterSample light = emitter_sample(scene, id, path_draw(scene, path, DIM_LIGHT),
-                                         path_draw_bits(scene, path, DIM_TRIANGLE), active);
-
-    v3 to_light = v3_sub(light.p, s.p);
-    real inverse_distance = rsqrt(v3_dot(to_light, to_light));
-    v3 wo = to_local(s.frame, v3_scale(to_light, inverse_distance));
-    mask front = light.discrete | (v3_dot(light.shading_normal, to_light) < 0);
-    active = active & front & bsdf_is_lit_from(scene, s.bsdf, wo) & (inverse_distance < FAR);
-    if (!ANY(active)) return sample;
-
-    // 1 / pdf of wo, solid angle measure (of a point light 1 / distance^2): cosine / distance^2 turns the area measure
-    // into it.
-    real cosine = light.discrete ? (real)(1) : fabs(v3_dot(light.normal, to_light)) * inverse_distance;
-    real inverse_pdf = cosine * square(inverse_distance) * light.inverse_pdf / emitter_probability(scene, id);
-    BsdfResponse bsdf = bsdf_respond(scene, s, wo, active, v2_of((real)(0), (real)(0)), (real)(0), NO_LANES);
+// Completes a light sample by what the BSDF answers for its direction wo, local.
+static DirectLight direct_light(const Scene *scene, const Path *path, Surface s, LightSample light, v3 wo,
+                                BsdfResponse bsdf) {
+    real inverse_pdf = light.inverse_pdf;
     if (CHOSEN(scene, lighting, mis)) {
         real weight = mis_weight(scene, light.discrete ? (real)(0) : bsdf.pdf * inverse_pdf);
         inverse_pdf = weight * inverse_pdf;
     }
-    v3 light_in = v3_scale(v3_mul(bsdf.f, emitter_radiance(scene, id)), wo.z * inverse_pdf);
+    v3 light_in = v3_scale(v3_mul(bsdf.f, light.radiance), fabs(wo.z) * inverse_pdf);
     // Light that is not finite must reach the film, where it is counted.
-    sample.active = active & ((v3_largest(light_in) > 0) | !is_finite(light_in));
-    sample.radiance = v3_mul(path->throughput, light_in);
-    sample.shadow.o = leave_surface(s, to_light);
-    sample.shadow.d = v3_sub(shadow_ray_end(light, to_light), sample.shadow.o);
-    return sample;
+    mask active = light.active & ((v3_largest(light_in) > 0) | !is_finite(light_in));
+    DirectLight direct = {v3_mul(path->throughput, light_in), shadow_ray(s, light), active};
+    return direct;
 }
 
-// The radiance of a light sample where nothing blocks its shadow ray, else 0.
-static v3 visible_light(const Scene *scene, LightSample sample) {
+// The radiance of direct light where nothing blocks its shadow ray, else 0.
+static v3 visible_light(const Scene *scene, DirectLight light) {
     v3 none = v3_all((real)(0));
-    if (EMITTER_KINDS == 0 || !ANY(sample.active)) return none;
-    mask blocked = any_hit_to_light(scene, sample.shadow, sample.active);
+    if (EMITTER_KINDS == 0 || !ANY(light.active)) return none;
+    mask blocked = any_hit_to_light(scene, light.shadow, light.active);
     if (OPAL_REPEAT_traversal) {
-        Ray again = same_ray(sample.shadow, blocked | (sample.shadow.o.x < FAR));
-        blocked = any_hit_to_light(scene, again, sample.active);
+        Ray again = same_ray(light.shadow, blocked | (light.shadow.o.x < FAR));
+        blocked = any_hit_to_light(scene, again, light.active);
     }
-    add_count(scene, COUNTER_shadow_rays, count_lanes(sample.active));
-    return v3_pick(sample.active & !blocked, sample.radiance, none);
+    add_count(scene, COUNTER_shadow_rays, count_lanes(light.active));
+    return v3_pick(light.active & !blocked, light.radiance, none);
 }
 
 // The least normal float: a path with less throughput ends. The least denormal times 0.9 rounds to itself, so that
 // paths would go on for ever.
 #define THROUGHPUT_LEAST R(1.1754944e-38)
 
-// Draws the path's next segment by the BSDF. Returns the active lanes whose path still carries something.
-static mask scatter(const Scene *scene, Path *path, Surface s, mask active) {
-    v2 lobe = path_draw(scene, path, DIM_LOBE);
-    BsdfSample sample = bsdf_sample(scene, s, path_draw(scene, path, DIM_BSDF), lobe.x, active);
+// Sets the path's next segment to a sample of the BSDF. Returns the active lanes whose path still carries something.
+static mask scatter(const Scene *scene, Path *path, Surface s, BsdfSample sample, mask active) {
     mask broken = active & !is_finite(sample.weight);
     if (ANY(broken)) { // the path ends, and the film counts it
         path->radiance = v3_pick(broken, sample.weight, path->radiance);
@@ -152,9 +141,25 @@ static mask scatter(const Scene *scene, Path *path, Surface s, mask active) {
     path->throughput = v3_mul(path->throughput, sample.weight);
     path->eta = path->eta * sample.eta;
     path->specular = sample.discrete;
-    if (CHOSEN(scene, lighting, mis)) path->pdf = sample.pdf;
+    if (CHOSEN(scene, lighting, mis)) {
+        path->pdf = sample.pdf;
+        path->from = reference_point(s);
+    }
     path->depth = path->depth + 1u;
     return active & (v3_largest(path->throughput) >= THROUGHPUT_LEAST);
+}
+
+// What happens to the path at surface s: in the lanes of by_light a direction to a light is sampled, in those of by_bsdf
+// the next segment. The BSDF is asked once for both. Sets *direct, whose visibility is tested later, by visible_light, so
+// that a processor works at this and at the next segment at the same time. Returns the lanes of by_bsdf whose path still
+// carries something.
+static mask interact(const Scene *scene, Path *path, Surface s, mask by_light, mask by_bsdf, DirectLight *direct) {
+    v3 wo;
+    LightSample light = sample_light(scene, path, s, by_light, &wo);
+    BsdfResponse bsdf = bsdf_respond(scene, s, wo, light.active, path_draw(scene, path, DIM_BSDF),
+                                     path_draw(scene, path, DIM_LOBE).x, by_bsdf);
+    *direct = direct_light(scene, path, s, light, wo, bsdf);
+    return scatter(scene, path, s, bsdf.sample, by_bsdf);
 }
 
 // The greatest probability to survive. It is below 1, because total reflection can hold a path in glass for ever, and

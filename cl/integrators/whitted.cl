@@ -3,25 +3,27 @@
 #include "bsdfs/dispatch.cl"
 #include "core/lanes.cl"
 #include "core/rng.cl"
+#include "emitters/dispatch.cl"
 #include "integrators/steps.cl"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "surface.cl"
 
 #define WHITTED_SURVIVAL R(0.95)
 
 static mask whitted_step(const Scene *scene, Path *path, Hit hit, mask active) {
-    active = active & is_hit(hit);
-    if (!ANY(active)) return active;
-    Surface s = surface_at(scene, path->ray, hit, active);
-    path->radiance = v3_add(path->radiance, v3_mul(path->throughput, emitted(scene, path, s, active)));
-    active = active & to_mask(path->depth < scene->settings->max_depth);
+    mask on_surface = active & is_hit(hit);
+    if (ENVIRONMENT_KINDS == 0 && !ANY(on_surface)) return on_surface;
+    Surface s = surface_at(scene, path->ray, hit, on_surface);
+    v3 met = light_met(scene, path, s, on_surface, active);
+    path->radiance = v3_add(path->radiance, v3_mul(path->throughput, met));
+    active = on_surface & to_mask(path->depth < scene->settings->max_depth);
     bsdf_open(scene, &s, active);
     mask specular = active & bsdf_is_discrete(scene, s.bsdf);
-    LightSample light = sample_light(scene, path, s, active & !specular);
-    path->radiance = v3_add(path->radiance, visible_light(scene, light));
-    if (!ANY(specular)) return specular;
-    real u = path_draw(scene, path, DIM_LOBE).y;
-    Choice survives = choose((real)(WHITTED_SURVIVAL), u);
-    path->throughput = v3_scale(path->throughput, 1 / survives.probability);
-    return scatter(scene, path, s, specular) & survives.first;
+    Choice survives = choose((real)(WHITTED_SURVIVAL), path_draw(scene, path, DIM_LOBE).y);
+    path->throughput = v3_scale(path->throughput, specular ? 1 / survives.probability : (real)(1));
+    DirectLight direct;
+    mask followed = interact(scene, path, s, active & !specular, specular, &direct);
+    path->radiance = v3_add(path->radiance, visible_light(scene, direct));
+    return followed & survives.first;
 }

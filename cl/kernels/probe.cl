@@ -16,6 +16,7 @@
 #include "kernels/sample_columns.cl"
 #include "kernels/probe_list.h"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "shared/types.h"
 #include "surface.cl"
 #include "trace/trace.cl"
@@ -74,16 +75,12 @@ kernel void warp_pdf(int which, float parameter, global const float *points, glo
 // A surface of a mesh in the plane z = 0, seen from wi, at uv = 0.
 static Surface flat_surface(const Scene *scene, uint mesh, float wi_x, float wi_y, float wi_z) {
     real zero = 0, one = 1;
-    Surface s;
-    s.p = v3_all(zero);
-    s.t = s.u = s.v = s.ray_offset = zero;
-    s.triangle = (uints)(0);
+    Surface s = no_surface();
     s.frame.s = v3_of(one, zero, zero);
     s.frame.t = v3_of(zero, one, zero);
     s.frame.n = s.normal = v3_of(zero, zero, one);
     s.wi = v3_of((real)(wi_x), (real)(wi_y), (real)(wi_z));
     s.bsdf = (uints)(scene->meshes[mesh].bsdf);
-    s.emitter = (uints)(OPAL_NONE);
     bsdf_open(scene, &s, ALL_LANES);
     return s;
 }
@@ -121,21 +118,26 @@ static u2 bits_of(v2 u) {
     return bits;
 }
 
-// A point on a chosen emitter, and the density of both choices, area measure.
-kernel void light_draw(SCENE_PARAMETERS, global const float *given, global float *out, uint first, uint stride) {
+// A direction from a point in free space to a chosen emitter; the density is that of both choices.
+kernel void light_draw(SCENE_PARAMETERS, float from_x, float from_y, float from_z, global const float *given,
+                       global float *out, uint first, uint stride) {
     uint base = base_of_item(first);
     if (base >= stride) return;
     Scene scene = SCENE_OF_PARAMETERS;
-    uints id = emitter_choose(&scene, bits_of(get_v2(given, 0, stride, base)));
-    v2 point = get_v2(given, 2, stride, base);
-    EmitterSample s = emitter_sample(&scene, id, point, bits_of(get_v2(given, 4, stride, base)), ALL_LANES);
-    put_v3(out, LIGHT_X, stride, base, s.p);
-    put_v3(out, LIGHT_NORMAL_X, stride, base, s.shading_normal);
-    put(out, LIGHT_DENSITY, stride, base, emitter_probability(&scene, id) / s.inverse_pdf);
-    put_uints(out, LIGHT_ID, stride, base, id);
+    ReferencePoint from = {v3_of((real)(from_x), (real)(from_y), (real)(from_z)), v3_all((real)(0))};
+    EmitterChoice choice = emitter_choose(&scene, from, bits_of(get_v2(given, 0, stride, base)));
+    LightSample s = emitter_sample(&scene, choice.id, from, get_v2(given, 2, stride, base),
+                                   bits_of(get_v2(given, 4, stride, base)), ALL_LANES);
+    put_v3(out, LIGHT_D_X, stride, base, s.d);
+    put(out, LIGHT_DISTANCE, stride, base, s.distance);
+    put_v3(out, LIGHT_RADIANCE_R, stride, base, s.radiance);
+    put(out, LIGHT_DENSITY, stride, base, choice.probability / s.inverse_pdf);
+    put_uints(out, LIGHT_ID, stride, base, choice.id);
+    put(out, LIGHT_ACTIVE, stride, base, s.active ? (real)(1) : (real)(0));
 }
 
-// Closest and any hit of rays, and the density, area measure, with which light sampling finds the point that is hit.
+// Closest and any hit of rays; the light that a ray of unit direction meets: its radiance, and the density, solid angle
+// measure, with which light sampling at the ray's origin finds that direction.
 kernel void trace(SCENE_PARAMETERS, global const float *rays, global float *out, uint first, uint stride) {
     uint base = base_of_item(first);
     if (base >= stride) return;
@@ -145,17 +147,21 @@ kernel void trace(SCENE_PARAMETERS, global const float *rays, global float *out,
     Hit hit = closest_hit(&scene, ray, ALL_LANES);
     mask active = is_hit(hit);
     Surface s = surface_at(&scene, ray, hit, active);
-    mask active_emitter = active & to_mask(s.emitter != OPAL_NONE);
+    ReferencePoint from = {ray.o, v3_all((real)(0))};
+    mask met;
+    uints id = emitter_met(&scene, s, active, ALL_LANES, &met);
+    v3 radiance = v3_all((real)(0));
     real density = 0;
-    if (EMITTER_KINDS > 0 && ANY(active_emitter)) {
-        uints id = uints_pick(active_emitter, s.emitter, (uints)(0));
-        density = active_emitter ? emitter_area_pdf(&scene, id, s.triangle, active_emitter) : density;
+    if (MET_KINDS > 0 && ANY(met)) {
+        radiance = emitter_radiance(&scene, id, ray.d, s, met);
+        density = emitter_pdf(&scene, id, from, ray.d, s, met) * emitter_probability(&scene, id, from);
     }
     put(out, HIT_T, stride, base, active ? s.t : hit.t);
     put(out, HIT_U, stride, base, s.u);
     put(out, HIT_V, stride, base, s.v);
-    put_uints(out, HIT_SLOT, stride, base, hit.slot);
+    put_uints(out, HIT_SLOT, stride, base, hit.place);
     put(out, HIT_ANY, stride, base, any_hit(&scene, ray, ALL_LANES) ? (real)(1) : (real)(0));
-    put_uints(out, HIT_EMITTER, stride, base, uints_pick(active, s.emitter, (uints)(OPAL_NONE)));
+    put_uints(out, HIT_EMITTER, stride, base, uints_pick(met, id, (uints)(OPAL_NONE)));
+    put_v3(out, HIT_RADIANCE_R, stride, base, radiance);
     put(out, HIT_LIGHT_DENSITY, stride, base, density);
 }

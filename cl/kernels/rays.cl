@@ -14,6 +14,7 @@
 #include "kernels/sample_columns.cl"
 #include "kernels/rays_list.h"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "shared/counters.h"
 #include "shared/types.h"
 #include "surface.cl"
@@ -49,21 +50,20 @@ static Ray bounce_ray(const Scene *scene, Sampler sampler, Surface s, v3 normal)
     return ray;
 }
 
-// A shadow ray to a point on a light, as sample_light makes it (integrators/steps.cl). Where there are no lights, it
-// goes to a point of the box lo + [0, 1]^3 size. Lanes whose light faces away leave *active.
-static Ray shadow_ray(const Scene *scene, Sampler sampler, Surface s, v3 normal, v3 lo, v3 size, mask *active) {
+// A shadow ray to a light, as the integrators send it. Where there are no lights, it goes to a point of the box
+// lo + [0, 1]^3 size. Lanes whose light faces away leave *active.
+static Ray ray_to_light(const Scene *scene, Sampler sampler, Surface s, v3 normal, v3 lo, v3 size, mask *active) {
     v2 point = draw(scene, sampler, (uints)(1 + DIM_LIGHT));
     u2 choice = draw_bits(scene, sampler, (uints)(1 + DIM_EMITTER));
-    v3 end = v3_add(lo, v3_mul(size, v3_of(point.x, point.y, unit_real(choice.x))));
     if (EMITTER_KINDS > 0) {
-        uints id = emitter_choose(scene, choice);
+        ReferencePoint from = reference_point(s);
+        uints id = emitter_choose(scene, from, choice).id;
         u2 triangle = draw_bits(scene, sampler, (uints)(1 + DIM_TRIANGLE));
-        EmitterSample light = emitter_sample(scene, id, point, triangle, *active);
-        v3 to_light = v3_sub(light.p, s.p);
-        mask front = light.discrete | (v3_dot(light.shading_normal, to_light) < 0);
-        *active = *active & front & (v3_dot(normal, to_light) > 0);
-        end = shadow_ray_end(light, to_light);
+        LightSample light = emitter_sample(scene, id, from, point, triangle, *active);
+        *active = light.active & (v3_dot(normal, light.d) > 0);
+        return shadow_ray(s, light);
     }
+    v3 end = v3_add(lo, v3_mul(size, v3_of(point.x, point.y, unit_real(choice.x))));
     v3 start = leave_surface(s, v3_sub(end, s.p));
     Ray ray = {start, v3_sub(end, start), (real)(0), (real)(1)};
     return ray;
@@ -88,8 +88,8 @@ kernel void generate(SCENE_PARAMETERS, uint kind, float lo_x, float lo_y, float 
         Surface s = surface_at(&scene, ray, hit, active);
         v3 normal = v3_scale(s.normal, copysign((real)(1), -v3_dot(s.normal, ray.d))); // on the side that is seen
         if (kind == RAYS_bounce) ray = bounce_ray(&scene, sampler, s, normal);
-        else ray = shadow_ray(&scene, sampler, s, normal, v3_of((real)(lo_x), (real)(lo_y), (real)(lo_z)),
-                              v3_of((real)(size_x), (real)(size_y), (real)(size_z)), &active);
+        else ray = ray_to_light(&scene, sampler, s, normal, v3_of((real)(lo_x), (real)(lo_y), (real)(lo_z)),
+                                v3_of((real)(size_x), (real)(size_y), (real)(size_z)), &active);
     }
     put_ray(rays, stride, base, ray, active);
 }
@@ -115,12 +115,11 @@ kernel void closest_hits(SCENE_PARAMETERS, global const float *rays, global floa
         Ray ray = get_ray(rays, stride, base);
         Hit hit = closest_hit(&scene, ray, active);
         mask active_hit = is_hit(hit) & active;
-        uints id = triangle_id(&scene, uints_pick(active_hit, hit.slot, (uints)(0)));
         Surface s = surface_at(&scene, ray, hit, active_hit);
         put(hits, TRACE_T, stride, base, active_hit ? s.t : hit.t);
         put(hits, TRACE_U, stride, base, s.u);
         put(hits, TRACE_V, stride, base, s.v);
-        put_uints(hits, TRACE_TRIANGLE, stride, base, uints_pick(active_hit, id, (uints)(OPAL_NONE)));
+        put_uints(hits, TRACE_TRIANGLE, stride, base, uints_pick(active_hit, s.primitive, (uints)(OPAL_NONE)));
     }
     put_counters(tests, counters);
 }

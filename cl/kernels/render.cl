@@ -23,6 +23,7 @@ kernel void render(SCENE_PARAMETERS, global float *samples, uint first_item, uin
     scene.counters = counters;
     Path path;
     path.ray.o = path.ray.d = path.throughput = path.radiance = path.lost = v3_all((real)(0));
+    path.from.p = path.from.n = v3_all((real)(0));
     path.ray.tmin = path.ray.tmax = path.pdf = path.eta = 0;
     path.depth = path.sampler.pixel = path.sampler.sample = path.sampler.key0 = path.sampler.key1 = (uints)(0);
     path.specular = NO_LANES;

@@ -5,6 +5,7 @@
 #include "bsdfs/list.h"
 #include "cameras/list.h"
 #include "emitters/list.h"
+#include "shapes/list.h"
 #include "shared/types.h"
 
 // Records whose sizes, and members whose offsets, must be the same on both sides.

@@ -54,9 +54,7 @@ std::string counts_text(const std::map<std::string, size_t> &counts) {
 }
 
 void print_mesh(const Mesh &mesh) {
-    const auto *triangles = std::get_if<TriangleMesh>(&mesh.shape);
-    row("", "{}: {}, {}{}", mesh.name,
-        triangles ? fmt::format("{} triangles", triangles->triangles.size()) : "parallelogram",
+    row("", "{}: {}, {}{}", mesh.name, std::visit([](const auto &shape) { return shape.text(); }, mesh.shape),
         bsdf_name(mesh.bsdf.kind()), mesh.radiance ? ", emits " + color_text(*mesh.radiance) + " W/(m^2 sr)" : "");
 }
 

@@ -21,7 +21,7 @@ struct WarpRow {
 #define OPAL_LOBE_ROW(name, domain, parameter, otherwise) {#name, DomainKind::domain},
 constexpr WarpRow warps[] = {OPAL_WARPS(OPAL_WARP_ROW, OPAL_WARP_ROW, OPAL_LOBE_ROW)};
 
-constexpr double turn = 2 * std::numbers::pi;
+constexpr double turn = 2 * std::numbers::pi, far_away = 1e30;
 
 double angle_of(Vec3 w) { // azimuth in [0, 2 pi)
     const double phi = std::atan2(w.y, w.x);
@@ -119,28 +119,42 @@ Sampled sampled_bsdf(KernelProbe &probe, unsigned id, Vec3 wi) {
     return sampled;
 }
 
-Sampled sampled_lights(KernelProbe &probe) {
+Planes rays_from(Vec3 from, std::span<const Vec3> directions) {
+    Planes rays(RAY_PLANES, directions.size());
+    for (size_t i = 0; i < directions.size(); i++) {
+        const Vec3 d = directions[i];
+        const double ray[RAY_PLANES] = {from.x, from.y, from.z, d.x, d.y, d.z, 0, far_away};
+        for (size_t plane = 0; plane < RAY_PLANES; plane++)
+            rays.at(plane, i) = float(ray[plane]);
+    }
+    return rays;
+}
+
+Sampled sampled_lights(KernelProbe &probe, Vec3 from) {
     Sampled sampled;
     sampled.name = "light";
     sampled.domain = &stats::domain(DomainKind::square);
     const Vec3 center = probe.scene().center;
     const double scale = probe.scene().scale;
-    sampled.draw = [&probe, center, scale](const Planes &numbers, stats::Histogram &histogram) {
-        const Planes drawn = probe.light_sample(numbers);
+    const Vec3 flat_from = (from - center) * scale;
+    sampled.may_fail = true;
+    sampled.draw = [&probe, from, flat_from, scale](const Planes &numbers, stats::Histogram &histogram) {
+        const Planes drawn = probe.light_sample(flat_from, numbers);
         for (size_t i = 0; i < drawn.count; i++)
-            histogram.add(drawn.vec3(LIGHT_X, i) * (1 / scale) + center);
+            if (drawn.at(LIGHT_ACTIVE, i) == 0)
+                histogram.add_failed();
+            else
+                histogram.add(from + drawn.vec3(LIGHT_D_X, i) * (drawn.at(LIGHT_DISTANCE, i) / scale));
     };
-    sampled.density = [&probe, center, scale](std::span<const Vec3> points, std::span<double> values) {
-        Planes rays(RAY_PLANES, points.size());
-        for (size_t i = 0; i < points.size(); i++) { // from above, straight down
-            const Vec3 o = (points[i] + Vec3{0, 0, 1} - center) * scale;
-            const double ray[RAY_PLANES] = {o.x, o.y, o.z, 0, 0, -1, 0, 4 * scale};
-            for (size_t plane = 0; plane < RAY_PLANES; plane++)
-                rays.at(plane, i) = float(ray[plane]);
+    sampled.density = [&probe, from, flat_from](std::span<const Vec3> points, std::span<double> values) {
+        std::vector<Vec3> directions;
+        for (Vec3 point : points)
+            directions.push_back(normalize(point - from));
+        const Planes hits = probe.trace(rays_from(flat_from, directions));
+        for (size_t i = 0; i < points.size(); i++) { // from solid angle to area, in the scene's own units
+            const Vec3 to_point = points[i] - from;
+            values[i] = hits.at(HIT_LIGHT_DENSITY, i) * std::abs(directions[i].z) / dot(to_point, to_point);
         }
-        const Planes hits = probe.trace(rays);
-        for (size_t i = 0; i < points.size(); i++)
-            values[i] = hits.at(HIT_LIGHT_DENSITY, i) * scale * scale; // a density over area in the scene's own units
     };
     sampled.relative_error = 2e-3; // it jumps from triangle to triangle
     return sampled;

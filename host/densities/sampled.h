@@ -28,8 +28,12 @@ Sampled sampled_warp(KernelProbe &probe, int warp, float parameter);
 Sampled sampled_bsdf(KernelProbe &probe, unsigned id, Vec3 wi);
 bool is_discrete(const Bsdf &bsdf); // and nothing else
 
-// The lights of the probe's scene, which lie in the unit square of the plane z = 0 and are not point lights.
-Sampled sampled_lights(KernelProbe &probe);
+// The lights of the probe's scene, which lie in the unit square of the plane z = 0 and are no delta lights, as they are
+// seen from a point: both in the scene's own units.
+Sampled sampled_lights(KernelProbe &probe, Vec3 from = {0.2, 0.7, 0.6});
+
+// Rays from a point, in flattened units, that end nowhere.
+Planes rays_from(Vec3 from, std::span<const Vec3> directions);
 
 struct DensityCheck {
     stats::Histogram histogram;

@@ -113,7 +113,8 @@ NumericResult measure_numbers(double u, const Device &device, const StressSettin
             comparison.add_vectors(a, b, BSDF_WO_X);
             comparison.add_vectors(a, b, BSDF_WEIGHT_R);
         }
-    comparison.add_vectors(single.light_sample(numbers), oracle.light_sample(numbers), LIGHT_X);
+    const Vec3 from = {0.1, -0.2, 0.05};
+    comparison.add_vectors(single.light_sample(from, numbers), oracle.light_sample(from, numbers), LIGHT_D_X);
     return comparison.result();
 }
 

@@ -9,23 +9,11 @@ namespace {
 // An arbitrary rotation, so that no coordinate is exact by chance.
 const Transform rotation = Transform::rotate({1, 2, 3}, 34) * Transform::rotate({0, 1, 0}, 21);
 
-TriangleMesh moved(TriangleMesh mesh, const Transform &by) {
-    for (Vec3 &p : mesh.positions)
-        p = by.point(p);
-    for (Vec3 &n : mesh.normals)
-        n = normalize(by.normal(n));
-    return mesh;
-}
-
-Parallelogram moved(const Parallelogram &p, const Transform &by) {
-    return {by.point(p.origin), by.vector(p.u), by.vector(p.v)};
-}
-
 } // namespace
 
 SceneDescription moved(SceneDescription scene, const Transform &by) {
     for (Mesh &mesh : scene.meshes)
-        std::visit([&](auto &shape) { shape = moved(shape, by); }, mesh.shape);
+        std::visit([&](auto &shape) { shape = shape.moved(by); }, mesh.shape);
     for (PointLight &l : scene.point_lights)
         l.position = by.point(l.position);
     scene.camera.to_world = by * scene.camera.to_world;

@@ -23,8 +23,8 @@ void store(Vec3 from, float (&to)[3]) {
 // The slot of each triangle's vertices, by triangle id: block * block_size + place in the block, as in a Hit.
 std::vector<uint> triangle_slots(const FlatScene &scene) {
     std::vector<uint> slots(scene.triangles.size());
-    for (uint slot = 0; slot < scene.blocks.size() * block_size; slot++) {
-        const uint id = scene.blocks[slot / block_size].id[slot % block_size];
+    for (uint slot = 0; slot < scene.triangle_blocks.size() * block_size; slot++) {
+        const uint id = scene.triangle_blocks[slot / block_size].id[slot % block_size];
         if (id != OPAL_NONE)
             slots[id] = slot;
     }

@@ -6,8 +6,8 @@
 namespace opal {
 
 // Fills scene.emitters, scene.light_triangles and MeshRecord::emitter; needs scene.triangles, scene.meshes and
-// scene.blocks. A light whose radiance or power is black is left out. Areas are in flattened units, those of the
-// rounded triangles, summed in double.
+// scene.triangle_blocks. A light whose radiance or power is black is left out. Areas are in flattened units, those of
+// the rounded triangles, summed in double.
 void gather_emitters(const SceneDescription &description, const Flattening &flattening, const TriangleSoup &soup,
                      FlatScene &scene);
 

@@ -32,7 +32,7 @@ public:
     OPAL_ALL_BSDFS(OPAL_DECIDE_BSDF)
 #undef OPAL_DECIDE_BSDF
 
-#define OPAL_DECIDE_EMITTER(name)                                                                                      \
+#define OPAL_DECIDE_EMITTER(name, traits)                                                                              \
     Decision emitter_##name() const { return emitter(EMITTER_##name); }
     OPAL_EMITTERS(OPAL_DECIDE_EMITTER)
 #undef OPAL_DECIDE_EMITTER
@@ -41,6 +41,11 @@ public:
     Decision camera_##name() const { return camera(CAMERA_##name); }
     OPAL_CAMERAS(OPAL_DECIDE_CAMERA)
 #undef OPAL_DECIDE_CAMERA
+
+#define OPAL_DECIDE_SHAPE(name, Block)                                                                                 \
+    Decision shape_##name() const { return shape(scene.name##_blocks.size()); }
+    OPAL_SHAPES(OPAL_DECIDE_SHAPE)
+#undef OPAL_DECIDE_SHAPE
 
     Decision bsdf(uint kind) const {
         if (!integrator.has(OPAL_ASKS_BSDFS))
@@ -57,8 +62,8 @@ public:
     Decision emitter(uint kind) const {
         if (!integrator.has(OPAL_ASKS_LIGHTS))
             return {false, "this integrator asks no emitter"};
-        if (kind == EMITTER_point && !samples_emitters(description.strategy))
-            return {false, "a BSDF sample never hits a point"};
+        if (!CAN_BE_MET(emitter_traits(kind)) && !samples_emitters(description.strategy))
+            return {false, fmt::format("a BSDF sample never hits a {} light", emitter_name(kind))};
         const auto has = [&](const EmitterRecord &emitter) { return emitter.kind == kind; };
         return counted(std::size_t(std::count_if(scene.emitters.begin(), scene.emitters.end(), has)),
                        scene.emitters.size(), "emitter", "emitters");
@@ -67,6 +72,8 @@ public:
     Decision camera(uint kind) const {
         return {description.camera.kind == kind, fmt::format("the camera is {}", camera_name(description.camera.kind))};
     }
+
+    static Decision shape(std::size_t blocks) { return {blocks > 0, plural(blocks, "block", "blocks")}; }
 
     Decision many_emitters() const {
         if (!integrator.has(OPAL_ASKS_LIGHTS))
@@ -91,15 +98,18 @@ public:
 
     Decision tree() const {
         const std::size_t inside = scene.triangles.size() - scene.face_list_triangles;
-        if (inside == 0 && lanes >= FACE_LIST_LANES)
+        std::size_t others = 0; // blocks of other shapes
+#define OPAL_COUNT_BLOCKS(name, Block) others += SHAPE_##name == SHAPE_triangle ? 0 : scene.name##_blocks.size();
+        OPAL_SHAPES(OPAL_COUNT_BLOCKS)
+#undef OPAL_COUNT_BLOCKS
+        if (inside == 0 && others == 0 && lanes >= FACE_LIST_LANES)
             return {false, scene.triangles.empty() ? "there are no triangles" : "all triangles are listed"};
-        return {true, plural(inside, "triangle", "triangles")};
+        return {true, plural(inside, "triangle", "triangles") + (others ? " and other shapes" : "")};
     }
 
     Decision large_tree() const {
-        const std::size_t bytes = scene.nodes.size() * sizeof(BvhNode) + scene.blocks.size() * sizeof(TriangleBlock);
-        return {tree().on && bytes > large_tree_bytes,
-                fmt::format("{:.1f} MiB of nodes and triangles", double(bytes) / (1 << 20))};
+        return {tree().on && scene.tree_bytes() > large_tree_bytes,
+                fmt::format("{:.1f} MiB of nodes and blocks", double(scene.tree_bytes()) / (1 << 20))};
     }
 
     Decision wide_filter() const {

@@ -76,8 +76,8 @@ void gather_bsdfs(const SceneDescription &description, FlatScene &scene) {
     scene.bsdfs.resize(scene.bsdfs.size() + longest / sizeof(uint));
 }
 
-// Point lights and the corners of emitting triangles: every shadow ray ends at one of these points or in their convex
-// hull.
+// Point lights, the corners of emitting triangles, and those of the boxes of other primitives that emit: every shadow
+// ray ends at one of these points or in their convex hull.
 std::vector<Point3f> light_points(const SceneDescription &description, const Flattening &flattening,
                                   const TriangleSoup &soup, const std::vector<Triangle> &triangles) {
     std::vector<Point3f> points;
@@ -87,6 +87,10 @@ std::vector<Point3f> light_points(const SceneDescription &description, const Fla
         if (description.meshes[triangles[id].mesh].radiance)
             for (uint vertex : soup.corners[id])
                 points.push_back(soup.vertices[vertex]);
+    for (const BoundedPrimitive &other : soup.others)
+        if (description.meshes[other.mesh].radiance)
+            for (const Point3f &corner : other.box.corners())
+                points.push_back(corner);
     return points;
 }
 
@@ -98,13 +102,21 @@ void build_acceleration(TriangleSoup &soup, const std::vector<Point3f> &lights, 
     std::vector<Face> faces = pair_up(ids, soup, scene.triangles);
     if (!with_face_list)
         faces.clear();
-    if (faces.empty() || ids.size() < soup.corners.size())
+    if (faces.empty() || ids.size() < soup.corners.size() || !soup.others.empty())
         build_tree(soup, faces, scene);
     list_faces(soup, std::move(faces), lights, scene);
     scene.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 } // namespace
+
+std::size_t FlatScene::tree_bytes() const {
+    std::size_t bytes = nodes.size() * sizeof(BvhNode);
+#define OPAL_ADD_BLOCKS(name, Block) bytes += name##_blocks.size() * sizeof(name##_blocks[0]);
+    OPAL_SHAPES(OPAL_ADD_BLOCKS)
+#undef OPAL_ADD_BLOCKS
+    return bytes;
+}
 
 FlatScene flatten(const SceneDescription &description, int lanes) {
     FlatScene scene;
@@ -115,7 +127,7 @@ FlatScene flatten(const SceneDescription &description, int lanes) {
     fill_film(description.camera, scene.settings);
     fill_strategy(description, flattening, scene.settings);
     gather_bsdfs(description, scene);
-    TriangleSoup soup = gather_triangles(description, flattening, scene);
+    TriangleSoup soup = gather_primitives(description, flattening, scene);
     build_acceleration(soup, light_points(description, flattening, soup, scene.triangles),
                        lanes >= FACE_LIST_LANES && description.strategy.specialise, scene);
     gather_emitters(description, flattening, soup, scene);

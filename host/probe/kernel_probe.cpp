@@ -126,8 +126,9 @@ Planes KernelProbe::bsdf_eval(unsigned id, Vec3 wi, std::span<const Vec3> points
                upload(input));
 }
 
-Planes KernelProbe::light_sample(const Planes &numbers) {
-    return run("light_draw", true, LIGHT_PLANES, numbers, upload(numbers));
+Planes KernelProbe::light_sample(Vec3 from, const Planes &numbers) {
+    return run("light_draw", true, LIGHT_PLANES, numbers, cl_float(from.x), cl_float(from.y), cl_float(from.z),
+               upload(numbers));
 }
 
 Planes KernelProbe::trace(const Planes &rays) { return run("trace", true, HIT_PLANES, rays, upload(rays)); }

@@ -30,12 +30,19 @@ unsigned Bsdf::traits() const {
     return traits;
 }
 
-#define OPAL_NAME(name) #name,
 const char *emitter_name(unsigned kind) {
+#define OPAL_NAME(name, traits) #name,
     static const char *const names[] = {OPAL_EMITTERS(OPAL_NAME)};
+#undef OPAL_NAME
     return names[kind];
 }
-#undef OPAL_NAME
+
+int emitter_traits(unsigned kind) {
+#define OPAL_TRAITS(name, traits) traits,
+    static const int all[] = {OPAL_EMITTERS(OPAL_TRAITS)};
+#undef OPAL_TRAITS
+    return all[kind];
+}
 
 const char *camera_name(unsigned kind) {
 #define OPAL_CAMERA_NAME(name, record, traits) #name,

@@ -6,13 +6,13 @@
 #include "cameras/list.h"
 #include "emitters/list.h"
 #include "scene/parameters.h"
+#include "scene/shapes.h"
 #include "scene/strategy.h"
 #include "shared/types.h"
 
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 namespace opal {
@@ -29,6 +29,7 @@ const char *bsdf_name(unsigned kind);    // kind: BSDF_*
 unsigned bsdf_traits(unsigned kind);     // OPAL_SMOOTH and so on, as bits; 0 of a kind that leads to others
 const char *emitter_name(unsigned kind); // kind: EMITTER_*
 const char *camera_name(unsigned kind);  // kind: CAMERA_*
+int emitter_traits(unsigned kind);       // SURFACE_LIGHT | ...
 
 // A material: the record of its kind, ready for the device but for the places of the BSDFs that it leads to. By default
 // a grey diffuse one.
@@ -46,22 +47,9 @@ struct Bsdf {
     template <class Record> Record as() const { return record_of<Record>(words); } // is<Record>() must hold
 };
 
-struct TriangleMesh {
-    std::vector<Vec3> positions; // world space
-    std::vector<Vec3> normals;   // world space, unit; may be empty
-    struct Corner {
-        unsigned position, normal;
-    };                                            // indices; normal OPAL_NONE: the geometric normal
-    std::vector<std::array<Corner, 3>> triangles; // degenerate ones already dropped
-};
-
-struct Parallelogram {
-    Vec3 origin, u, v; // world space; front side u x v
-};
-
 struct Mesh {
     std::string name; // file name or given name
-    std::variant<TriangleMesh, Parallelogram> shape;
+    Shape shape;
     Bsdf bsdf;
     std::optional<Color> radiance; // emitted by its area emitter, W / (m^2 sr)
     SourcePlace place;

@@ -54,8 +54,8 @@ TEST_CASE("a scene of nothing", "[flatten]") {
         const FlatScene scene = flatten(scene_of({}), lanes);
         CHECK(scene.scale == 1);
         CHECK(scene.triangles.empty());
-        CHECK(scene.blocks.size() == 1);
-        CHECK(scene.blocks[0].id[0] == OPAL_NONE);
+        CHECK(scene.triangle_blocks.size() == 1);
+        CHECK(scene.triangle_blocks[0].id[0] == OPAL_NONE);
         CHECK(scene.settings.emitter_count == 0);
         CHECK(scene.features[FEATURE_tree] == (lanes == 1));
     }
@@ -122,7 +122,7 @@ std::vector<std::array<std::array<float, 3>, 3>> triangles_of_face(const FlatSce
         expected.push_back({at(3), at(2), at(1)});
     const uint slot = scene.settings.face_list_slot + 2 * i;
     for (uint which = 0; which < 2; which++) {
-        const bool there = scene.blocks[(slot + which) / 8].id[(slot + which) % 8] != OPAL_NONE;
+        const bool there = scene.triangle_blocks[(slot + which) / 8].id[(slot + which) % 8] != OPAL_NONE;
         CHECK(there == (which < expected.size()));
         for (int corner = 0; corner < 3 && there; corner++)
             CHECK(vertex(scene, slot + which, corner) == expected[which][size_t(corner)]);
@@ -216,7 +216,7 @@ TEST_CASE("triangles that float makes degenerate are dropped everywhere and coun
     CHECK(scene.triangles.size() == 2);
     CHECK(scene.light_triangles.size() == 2);
     uint kept = 0;
-    for (const TriangleBlock &block : scene.blocks)
+    for (const TriangleBlock &block : scene.triangle_blocks)
         kept += uint(std::count_if(block.id, block.id + 8, [](uint id) { return id != OPAL_NONE; }));
     CHECK(kept == 2);
 
@@ -280,9 +280,9 @@ TEST_CASE("the largest triangles are listed beside the tree, each triangle is in
     CHECK(scene.face_vertices.size() == 3 * 4);
     REQUIRE(triangles_of_face(scene, 0).size() == 2);
     for (uint place = 0; place < 2; place++)
-        CHECK(scene.triangles[scene.blocks[scene.settings.face_list_slot / 8].id[place]].mesh == 1);
+        CHECK(scene.triangles[scene.triangle_blocks[scene.settings.face_list_slot / 8].id[place]].mesh == 1);
     std::vector<int> seen(scene.triangles.size());
-    for (const TriangleBlock &block : scene.blocks)
+    for (const TriangleBlock &block : scene.triangle_blocks)
         for (uint id : block.id)
             if (id != OPAL_NONE)
                 seen[id]++;

@@ -82,25 +82,28 @@ Finding probabilities_sum(const std::string &what, const FlatScene &flat) {
                  std::abs(emitters - 1) < 1e-6 && std::abs(triangles - meshes) < 1e-6 * (1 + meshes));
 }
 
-// The density that sampling reports, against the one of a ray that finds the same point.
-Finding densities_agree(const std::string &what, KernelProbe &probe, unsigned seed) {
-    const Planes drawn = probe.light_sample(random_numbers(probe, 20000, seed));
-    Planes rays(RAY_PLANES, drawn.count);
+// What sampling reports of a direction, against a ray of that direction: emitter, distance, radiance and density. From
+// below, the lights' backs are seen.
+Finding samples_agree(const std::string &what, KernelProbe &probe, unsigned seed) {
     const double scale = probe.scene().scale;
-    for (size_t i = 0; i < drawn.count; i++) {
-        const double ray[RAY_PLANES] = {
-            drawn.at(LIGHT_X, i), drawn.at(LIGHT_Y, i), drawn.at(LIGHT_Z, i) + scale, 0, 0, -1, 0, 4 * scale};
-        for (size_t plane = 0; plane < RAY_PLANES; plane++)
-            rays.at(plane, i) = float(ray[plane]);
-    }
-    const Planes hits = probe.trace(rays);
+    const auto flat = [&](Vec3 p) { return (p - probe.scene().center) * scale; };
+    const Vec3 from = flat({0.7, 0.3, 0.4});
+    const Planes numbers = random_numbers(probe, 20000, seed), drawn = probe.light_sample(from, numbers),
+                 behind = probe.light_sample(flat({0.7, 0.3, -0.4}), numbers);
+    std::vector<Vec3> directions;
+    for (size_t i = 0; i < drawn.count; i++)
+        directions.push_back(drawn.vec3(LIGHT_D_X, i));
+    const Planes hits = probe.trace(rays_from(from, directions));
+    const auto close = [](double a, double b) { return std::abs(a / b - 1) < 1e-4; };
     size_t wrong = 0;
     for (size_t i = 0; i < drawn.count; i++)
         wrong += hits.bits(HIT_EMITTER, i) != drawn.bits(LIGHT_ID, i) ||
-                 !(std::abs(hits.at(HIT_LIGHT_DENSITY, i) / drawn.at(LIGHT_DENSITY, i) - 1) < 1e-4) ||
-                 !(drawn.at(LIGHT_NORMAL_Z, i) > 0.999);
+                 !close(hits.at(HIT_LIGHT_DENSITY, i), drawn.at(LIGHT_DENSITY, i)) ||
+                 !close(hits.at(HIT_T, i), drawn.at(LIGHT_DISTANCE, i)) ||
+                 !close(hits.at(HIT_RADIANCE_R, i), drawn.at(LIGHT_RADIANCE_R, i)) || drawn.at(LIGHT_ACTIVE, i) != 1 ||
+                 behind.at(LIGHT_ACTIVE, i) != 0;
     // Of points on an edge the ray may hit the neighbour.
-    return exact(what + ": " + std::to_string(wrong) + " of 20000 densities differ", wrong <= 20);
+    return exact(what + ": " + std::to_string(wrong) + " of 20000 samples differ", wrong <= 20);
 }
 
 } // namespace
@@ -238,7 +241,7 @@ Findings check_lights(const std::vector<LightCase> &cases, const Sources &source
                     KernelProbe probe = probe_of(flat, lanes, sources);
                     Effort effort = effort_at(lanes, seed + unsigned(findings.size()));
                     effort.nu = effort.nv = 10;
-                    findings.push_back(densities_agree(what, probe, effort.seed));
+                    findings.push_back(samples_agree(what, probe, effort.seed));
                     if (lanes == tested_lanes().back())
                         append(findings, light_findings(probe, sampled_lights(probe), what, effort));
                 }
