@@ -26,7 +26,7 @@ static Surface surface_pick(mask m, Surface yes, Surface no) {
     return s;
 }
 
-// A value for lanes without a surface: its indices are valid.
+// All zero, of no emitter: valid for lanes that hit nothing.
 static Surface no_surface(void) {
     v3 zero = v3_all((real)(0));
     Frame frame = {zero, zero, zero};

@@ -139,7 +139,10 @@ static mask scatter(const Scene *scene, Path *path, Surface s, BsdfSample sample
     path->ray.tmin = 0;
     path->ray.tmax = FAR;
     path->throughput = v3_mul(path->throughput, sample.weight);
-    path->eta = path->eta * sample.eta;
+    if (TRANSMITTING_BSDF_KINDS > 0) { // radiance is scaled where light enters another medium (Veach 1997, section 5.2)
+        path->throughput = v3_scale(path->throughput, 1 / square(sample.eta));
+        path->eta = path->eta * sample.eta;
+    }
     path->specular = sample.discrete;
     if (CHOSEN(scene, lighting, mis)) {
         path->pdf = sample.pdf;

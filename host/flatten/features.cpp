@@ -37,15 +37,14 @@ public:
     OPAL_EMITTERS(OPAL_DECIDE_EMITTER)
 #undef OPAL_DECIDE_EMITTER
 
-#define OPAL_DECIDE_CAMERA(name, record, traits)                                                                       \
-    Decision camera_##name() const { return camera(CAMERA_##name); }
-    OPAL_CAMERAS(OPAL_DECIDE_CAMERA)
-#undef OPAL_DECIDE_CAMERA
-
 #define OPAL_DECIDE_SHAPE(name, Block)                                                                                 \
     Decision shape_##name() const { return shape(scene.name##_blocks.size()); }
     OPAL_SHAPES(OPAL_DECIDE_SHAPE)
 #undef OPAL_DECIDE_SHAPE
+#define OPAL_DECIDE_CAMERA(name, record, traits)                                                                       \
+    Decision camera_##name() const { return camera(CAMERA_##name); }
+    OPAL_CAMERAS(OPAL_DECIDE_CAMERA)
+#undef OPAL_DECIDE_CAMERA
 
     Decision bsdf(uint kind) const {
         if (!integrator.has(OPAL_ASKS_BSDFS))
@@ -69,11 +68,10 @@ public:
                        scene.emitters.size(), "emitter", "emitters");
     }
 
+    static Decision shape(std::size_t blocks) { return {blocks > 0, plural(blocks, "block", "blocks")}; }
     Decision camera(uint kind) const {
         return {description.camera.kind == kind, fmt::format("the camera is {}", camera_name(description.camera.kind))};
     }
-
-    static Decision shape(std::size_t blocks) { return {blocks > 0, plural(blocks, "block", "blocks")}; }
 
     Decision many_emitters() const {
         if (!integrator.has(OPAL_ASKS_LIGHTS))

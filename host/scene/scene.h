@@ -28,8 +28,8 @@ struct SourcePlace {
 const char *bsdf_name(unsigned kind);    // kind: BSDF_*
 unsigned bsdf_traits(unsigned kind);     // OPAL_SMOOTH and so on, as bits; 0 of a kind that leads to others
 const char *emitter_name(unsigned kind); // kind: EMITTER_*
-const char *camera_name(unsigned kind);  // kind: CAMERA_*
 int emitter_traits(unsigned kind);       // SURFACE_LIGHT | ...
+const char *camera_name(unsigned kind);  // kind: CAMERA_*
 
 // A material: the record of its kind, ready for the device but for the places of the BSDFs that it leads to. By default
 // a grey diffuse one.
