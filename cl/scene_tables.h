@@ -17,7 +17,8 @@
     TABLE(float, face_vertices, "listed vertices")              /* of the face list: 3 each, distinct */ \
     TABLE(FaceRecord, faces, "listed faces")                    /* the face list, beside the tree */ \
     TABLE(MeshRecord, meshes, "meshes") \
-    TABLE(BsdfRecord, bsdfs, "bsdfs")                           /* equal records are shared */ \
+    TABLE(uint, bsdfs, "words of bsdfs")                        /* records of bsdfs/list.h; equal ones are shared */ \
+    TABLE(uint, textures, "words of textures")                  /* records of textures/list.h */ \
     TABLE(EmitterRecord, emitters, "emitters") \
     TABLE(LightTriangle, light_triangles, "light triangles")
 

@@ -12,7 +12,8 @@ typedef struct {
     v3 wi;               // towards the ray's origin, unit, in that frame
     uints triangle;      // index
     real ray_offset;     // how far above the surface rays start (ray_offset_of)
-    uints bsdf, emitter; // indices; emitter = OPAL_NONE where the surface does not emit
+    uints bsdf;          // first word of the BSDF's record
+    uints emitter;       // index, OPAL_NONE where the surface does not emit
 } Surface;
 
 // The word of a slot within a row of a block (TriangleBlock, OPAL_WIDTH words a row), counted from the first block's

@@ -1,7 +1,5 @@
 // dielectric: a smooth boundary between two transparent media, two-sided, discrete.
 //   <bsdf type="dielectric"> <float name="intIOR" value="1.5046"/> <float name="extIOR" value="1.000277"/> </bsdf>
-//   intIOR   index of refraction on the side the normal points away from (1.5046, BK7 glass)
-//   extIOR   index of refraction on the side the normal points to (1.000277, air)
 // Reflects with the Fresnel reflectance as probability, rounded up to the random numbers' grid; else refracts by
 // Snell's law. Refraction scales radiance by (1/eta)^2, where eta is the index of the far side over that of the near
 // side (Veach 1997, section 5.2); eta is reported with the sample.
@@ -10,15 +8,6 @@
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "core/rng.cl"
-#include "scene.cl"
-
-typedef struct { real int_ior, ext_ior; } dielectric_bsdf;
-
-static dielectric_bsdf dielectric_at(const Scene *scene, uints id) {
-    dielectric_bsdf b = {GATHER(real, scene->bsdfs, id, .u.dielectric.int_ior),
-                         GATHER(real, scene->bsdfs, id, .u.dielectric.ext_ior)};
-    return b;
-}
 
 static v3 dielectric_eval(dielectric_bsdf b, v3 wi, v3 wo) { return v3_all((real)(0)); }
 

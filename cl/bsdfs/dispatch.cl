@@ -1,62 +1,80 @@
 // dispatch: the BSDF of each lane's material, picked by kind. Each kind that the kernel has is computed for all lanes
 // as soon as one active lane needs it.
-#include "bsdfs/dielectric.cl"
-#include "bsdfs/diffuse.cl"
-#include "bsdfs/interface.cl"
+#include "bsdfs/*.cl"
 #include "bsdfs/list.h"
-#include "bsdfs/microfacet.cl"
-#include "bsdfs/mirror.cl"
-#include "bsdfs/phong.cl"
 #include "core/lanes.cl"
 #include "scene.cl"
 
-#define COUNT_BSDF(name) +OPAL_HAS_bsdf_##name
+#define COUNT_BSDF(name, traits) +OPAL_HAS_bsdf_##name
 enum { BSDF_KINDS = 0 OPAL_BSDFS(COUNT_BSDF) }; // of this kernel
 
-static uints bsdf_kind(const Scene *scene, uints id) { return GATHER(uints, scene->bsdfs, id, .kind); }
+static uints bsdf_kind(const Scene *scene, uints at) { return GATHER_WORD(uints, scene->bsdfs, at); }
 
-// The active lanes whose material is of that kind.
-static mask bsdf_lanes(uints kind, uint wanted, mask active) {
-    return BSDF_KINDS == 1 ? active : active & to_mask(kind == wanted);
-}
+// What the BSDFs of a surface answer, one a lane.
+typedef struct {
+    v3 f;              // f(wi, wo) towards a light, without the cosine, 1/sr; 0 for discrete BSDFs
+    real pdf;          // the density with which `sample` would draw that wo, solid angle measure; 0 likewise
+    BsdfSample sample; // the next direction
+} BsdfResponse;
 
-// f(wi, wo) of the materials `id`, without the cosine, 1/sr, and in *pdf the density with which bsdf_sample draws wo,
-// solid angle measure. Both are 0 for discrete BSDFs and in lanes that are not active.
-static v3 bsdf_eval(const Scene *scene, uints id, v3 wi, v3 wo, mask active, real *pdf) {
-    v3 f = v3_all((real)(0));
-    *pdf = 0;
-    uints kind = bsdf_kind(scene, id);
-#define EVAL(name) \
+// Evaluates the BSDFs whose records begin at word `at` in direction wo, in the lanes of `evaluated`, and draws a
+// direction by u and lobe, independent numbers in [0, 1), in those of `sampled`. f, pdf and the weight are 0 in other
+// lanes. Both in one call, because each kind's code is compiled, and each material read, once a call.
+static BsdfResponse bsdf_respond(const Scene *scene, uints at, v2 uv, v3 wi, v3 wo, mask evaluated, v2 u, real lobe,
+                                 mask sampled) {
+    BsdfResponse r;
+    r.f = v3_all((real)(0));
+    r.pdf = 0;
+    r.sample = bsdf_sample_of(wi, v3_all((real)(0)), (real)(0), (real)(1), NO_LANES);
+    uints kind = bsdf_kind(scene, at);
+#define RESPOND(name, traits) \
     if (OPAL_HAS_bsdf_##name) { \
-        mask m = bsdf_lanes(kind, BSDF_##name, active); \
-        if (ANY(m)) { \
-            name##_bsdf b = name##_at(scene, id); \
-            f = v3_pick(m, name##_eval(b, wi, wo), f); \
-            *pdf = m ? name##_pdf(b, wi, wo) : *pdf; \
+        mask m = BSDF_KINDS == 1 ? ALL_LANES : to_mask(kind == BSDF_##name); \
+        mask m_evaluated = evaluated & m, m_sampled = sampled & m; \
+        if (ANY(m_evaluated | m_sampled)) { \
+            name##_bsdf b = name##_at(scene, at, uv); \
+            if (((traits) & OPAL_SMOOTH) && ANY(m_evaluated)) { \
+                r.f = v3_pick(m_evaluated, name##_eval(b, wi, wo), r.f); \
+                r.pdf = m_evaluated ? name##_pdf(b, wi, wo) : r.pdf; \
+            } \
+            if (ANY(m_sampled)) r.sample = bsdf_sample_pick(m_sampled, name##_sample(b, wi, u, lobe), r.sample); \
         } \
     }
-    OPAL_BSDFS(EVAL)
-    return f;
+    OPAL_BSDFS(RESPOND)
+    return r;
 }
 
-// Draws wo by the materials `id`; u and lobe in [0, 1) are independent. The weight is 0 in lanes that are not active.
-static BsdfSample bsdf_sample(const Scene *scene, uints id, v3 wi, v2 u, real lobe, mask active) {
-    BsdfSample s = bsdf_sample_of(wi, v3_all((real)(0)), (real)(0), (real)(1), NO_LANES);
-    uints kind = bsdf_kind(scene, id);
-#define SAMPLE(name) \
-    if (OPAL_HAS_bsdf_##name) { \
-        mask m = bsdf_lanes(kind, BSDF_##name, active); \
-        if (ANY(m)) s = bsdf_sample_pick(m, name##_sample(name##_at(scene, id), wi, u, lobe), s); \
-    }
-    OPAL_BSDFS(SAMPLE)
-    return s;
+// The evaluation alone, and in *pdf the density.
+static v3 bsdf_eval(const Scene *scene, uints at, v2 uv, v3 wi, v3 wo, mask active, real *pdf) {
+    v2 none = v2_of((real)(0), (real)(0));
+    BsdfResponse r = bsdf_respond(scene, at, uv, wi, wo, active, none, (real)(0), NO_LANES);
+    *pdf = r.pdf;
+    return r.f;
 }
 
-// The lanes whose material is discrete: light sampling cannot serve it.
-static mask bsdf_is_discrete(const Scene *scene, uints id) {
-    uints kind = bsdf_kind(scene, id);
+// The sample alone.
+static BsdfSample bsdf_sample(const Scene *scene, uints at, v2 uv, v3 wi, v2 u, real lobe, mask active) {
+    return bsdf_respond(scene, at, uv, wi, wi, NO_LANES, u, lobe, active).sample;
+}
+
+// The lanes whose BSDF is discrete and nothing else: light sampling cannot serve it.
+static mask bsdf_is_discrete(const Scene *scene, uints at) {
+    uints kind = bsdf_kind(scene, at);
     mask discrete = NO_LANES;
-    if (OPAL_HAS_bsdf_mirror) discrete = discrete | to_mask(kind == BSDF_mirror);
-    if (OPAL_HAS_bsdf_dielectric) discrete = discrete | to_mask(kind == BSDF_dielectric);
+#define ADD_DISCRETE(name, traits) \
+    if (OPAL_HAS_bsdf_##name && !((traits) & OPAL_SMOOTH)) discrete = discrete | to_mask(kind == BSDF_##name);
+    OPAL_BSDFS(ADD_DISCRETE)
     return discrete;
+}
+
+// The lanes where wo lies on a side from which light may reach wi: the front, or either where some of the light that
+// passes through has a density.
+static mask bsdf_is_lit_from(const Scene *scene, uints at, v3 wo) {
+    uints kind = bsdf_kind(scene, at);
+    mask lit = wo.z > 0;
+#define ADD_LIT(name, traits) \
+    if (OPAL_HAS_bsdf_##name && ((traits) & OPAL_SMOOTH) && ((traits) & OPAL_TRANSMITS)) \
+        lit = lit | to_mask(kind == BSDF_##name);
+    OPAL_BSDFS(ADD_LIT)
+    return lit;
 }

@@ -2,12 +2,31 @@
 //
 // Directions are in the local frame: z is the shading normal, wi points to the viewer, wo to the light; both are unit
 // and point away from the surface.
-//   NAME_bsdf NAME_at(scene, id)                parameters of the materials `id`, one a lane
 //   v3   NAME_eval(b, wi, wo)                   f(wi, wo) without the cosine, 1/sr; 0 for discrete BSDFs
 //   real NAME_pdf(b, wi, wo)                    density of NAME_sample, solid angle measure, 1/sr; 0 for discrete BSDFs
 //   BsdfSample NAME_sample(b, wi, u, lobe)      draws wo by random numbers u and lobe in [0, 1)
+// b is a NAME_bsdf, the lanes' parameters; NAME_at reads them. Both are made of bsdfs/NAME.h below.
 // Functions compute all lanes; their callers pick those that are meant.
+#include "bsdfs/list.h"
 #include "core/lanes.cl"
+#include "parameters.cl"
+#include "scene.cl"
+
+// NAME_bsdf, and NAME_at: the parameters at `uv` of the BSDFs whose records begin at word `at`.
+#define BSDF_READER(name, traits) \
+    typedef struct { \
+        uints at; \
+        OPAL_BSDF_##name(LANES_MEMBER) \
+    } name##_bsdf; \
+    static name##_bsdf name##_at(const Scene *scene, uints at, v2 uv) { \
+        enum { OPAL_BSDF_##name(PARAMETER_PLACE) textured = OPAL_TEXTURED_bsdf_##name }; \
+        global const bsdf_##name##_record *record = (global const bsdf_##name##_record *)scene->bsdfs; \
+        name##_bsdf lanes; \
+        lanes.at = at; \
+        OPAL_BSDF_##name(READ_PARAMETER) \
+        return lanes; \
+    }
+OPAL_BSDFS(BSDF_READER)
 
 typedef struct {
     v3 wo;           // unit

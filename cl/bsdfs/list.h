@@ -1,60 +1,45 @@
-// The BSDFs: one row, one parameter record and one file cl/bsdfs/NAME.cl each. NAME is also the XML type.
+// The BSDFs: one row, one list of parameters bsdfs/NAME.h and one file bsdfs/NAME.cl each. NAME is also the XML type.
 #ifndef OPAL_BSDF_LIST_H
 #define OPAL_BSDF_LIST_H
 
+#include "bsdfs/dielectric.h"
+#include "bsdfs/diffuse.h"
+#include "bsdfs/microfacet.h"
+#include "bsdfs/mirror.h"
+#include "bsdfs/phong.h"
 #include "shared/glue.h"
+#include "shared/parameters.h"
 
+// Traits of a kind, as bits.
+enum {
+    OPAL_SMOOTH = 1,   // some of its light has a density, so that light sampling serves it
+    OPAL_DISCRETE = 2, // some of its light leaves in single directions
+    OPAL_TRANSMITS = 4 // light passes through the surface
+};
+
+// BSDF(name, traits)
 #define OPAL_BSDFS(BSDF) \
-    BSDF(diffuse) \
-    BSDF(mirror) \
-    BSDF(dielectric) \
-    BSDF(microfacet) \
-    BSDF(phong)
+    BSDF(diffuse, OPAL_SMOOTH) \
+    BSDF(mirror, OPAL_DISCRETE) \
+    BSDF(dielectric, OPAL_DISCRETE | OPAL_TRANSMITS) \
+    BSDF(microfacet, OPAL_SMOOTH) \
+    BSDF(phong, OPAL_SMOOTH)
 
-#define OPAL_BSDF_ENUM(name) BSDF_##name,
+#define OPAL_BSDF_ENUM(name, traits) BSDF_##name,
 enum { OPAL_BSDFS(OPAL_BSDF_ENUM) BSDF_COUNT };
 
 #ifdef __cplusplus
 namespace opal {
 #endif
 
-typedef struct {
-    float albedo[3];   // reflectance of each colour, 0 to 1
-    uint use_cosine;   // draw directions by their cosine (1) or uniformly (0)
-} DiffuseParams;
-
-typedef struct {
-    float int_ior;     // index of refraction on the side the normal points away from
-    float ext_ior;     // index of refraction on the side the normal points to
-} DielectricParams;
-
-typedef struct {
-    float alpha;       // Beckmann roughness
-    float int_ior, ext_ior;
-    float ks;          // 1 - max(kd)
-    float kd[3];       // diffuse reflectance
-} MicrofacetParams;
-
-typedef struct {
-    float kd[3];       // diffuse reflectance
-    float pd;          // probability of the diffuse part, and its share of the energy
-    float ks[3];       // specular reflectance
-    float n;           // exponent
-} PhongParams;
-
-// One material. kind is a BSDF_* value and says which member of u is meant.
-typedef struct {
-    uint kind;
-    uint pad[3];
-    union {
-        DiffuseParams diffuse;
-        DielectricParams dielectric;
-        MicrofacetParams microfacet;
-        PhongParams phong;
-        float words[12];
-    } u;
-} BsdfRecord;
-OPAL_SIZE_CHECK(BsdfRecord, 64);
+// The record of a kind, as `bsdf_phong_record`: the kind, then its parameters. A BSDF is known by the index of its
+// record's first word in the scene's table of words.
+#define OPAL_BSDF_RECORD(name, traits) \
+    typedef struct bsdf_##name##_record { \
+        uint kind OPAL_INITIALLY(BSDF_##name); \
+        OPAL_BSDF_##name(OPAL_MEMBER) \
+    } bsdf_##name##_record;
+OPAL_BSDFS(OPAL_BSDF_RECORD)
 
 #ifdef __cplusplus
 }

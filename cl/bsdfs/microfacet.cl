@@ -1,9 +1,5 @@
 // microfacet: rough dielectric coat (Beckmann) over a diffuse base, one-sided, as Nori has it.
 //   <bsdf type="microfacet"> <float name="alpha" value="0.1"/> <color name="kd" value="0.5"/> ... </bsdf>
-//   alpha    root mean square slope of the facets (0.1)
-//   intIOR   index of refraction of the coat (1.5046)
-//   extIOR   index of refraction outside (1.000277)
-//   kd       diffuse reflectance (0.5); the coat gets ks = 1 - max(kd)
 // f = kd/pi + ks D(h) F(wi.h) G / (4 cos_i cos_o cos_h), with D the density of h over solid angle (hence the last
 // cosine), G Smith's rational approximation for Beckmann (Walter et al. 2007, section 5.2).
 #include "bsdfs/fresnel.cl"
@@ -12,18 +8,11 @@
 #include "core/math.cl"
 #include "core/rng.cl"
 #include "core/warp.cl"
-#include "scene.cl"
 
-typedef struct { real alpha, int_ior, ext_ior, ks, coat_chance; v3 kd; } microfacet_bsdf; // coat_chance: ks as drawn
-
-static microfacet_bsdf microfacet_at(const Scene *scene, uints id) {
-    real ks = GATHER(real, scene->bsdfs, id, .u.microfacet.ks);
-    microfacet_bsdf b = {GATHER(real, scene->bsdfs, id, .u.microfacet.alpha),
-                         GATHER(real, scene->bsdfs, id, .u.microfacet.int_ior),
-                         GATHER(real, scene->bsdfs, id, .u.microfacet.ext_ior), ks, drawn_probability(ks),
-                         GATHER_V3(scene->bsdfs, id, .u.microfacet.kd)};
-    return b;
-}
+// The specular reflectance of the coat, 1 - max(kd), and the probability to draw from it: the same as random numbers
+// have it.
+static real microfacet_ks(microfacet_bsdf b) { return 1 - v3_largest(b.kd); }
+static real microfacet_coat_chance(microfacet_bsdf b) { return drawn_probability(microfacet_ks(b)); }
 
 // Smith's shadowing of direction w by facets of normal h, in Walter's rational approximation for Beckmann.
 static real microfacet_g1(v3 w, v3 h, real alpha) {
@@ -39,7 +28,7 @@ static real microfacet_coat(microfacet_bsdf b, v3 wi, v3 wo, v3 h, real divisor)
     real cosine = v3_dot(wi, h);
     real sin2 = 1 - square(cosine);
     real f = fresnel_dielectric(fabs(cosine), real_max(sin2, (real)(0)), boundary_of(b.ext_ior, b.int_ior));
-    return b.ks * f * microfacet_g1(wi, h, b.alpha) * microfacet_g1(wo, h, b.alpha) / divisor;
+    return microfacet_ks(b) * f * microfacet_g1(wi, h, b.alpha) * microfacet_g1(wo, h, b.alpha) / divisor;
 }
 
 static v3 microfacet_eval(microfacet_bsdf b, v3 wi, v3 wo) {
@@ -50,25 +39,27 @@ static v3 microfacet_eval(microfacet_bsdf b, v3 wi, v3 wo) {
     return v3_pick(above, f, v3_all((real)(0)));
 }
 
-// c D / (4 h.wo) + (1 - c) cos_o / pi, where c = coat_chance. It integrates to less than 1, because the coat draws some
-// directions below the surface.
+// c D / (4 h.wo) + (1 - c) cos_o / pi, where c is the chance of the coat. It integrates to less than 1, because the coat
+// draws some directions below the surface.
 static real microfacet_pdf(microfacet_bsdf b, v3 wi, v3 wo) {
     v3 h = v3_normalize(v3_add(wi, wo));
     real coat = square_to_beckmann_pdf(h, b.alpha) / (4 * fabs(v3_dot(h, wo)));
-    real density = b.coat_chance * coat + (1 - b.coat_chance) * square_to_cosine_hemisphere_pdf(wo);
+    real coat_chance = microfacet_coat_chance(b);
+    real density = coat_chance * coat + (1 - coat_chance) * square_to_cosine_hemisphere_pdf(wo);
     return (wi.z > 0 & wo.z > 0) ? density : (real)(0);
 }
 
 // The weight uses the h that was drawn. An h recomputed from wo is off by an ulp of wo, which a small alpha magnifies.
 static BsdfSample microfacet_sample(microfacet_bsdf b, v3 wi, v2 u, real lobe) {
-    mask coated = lobe < b.coat_chance;
+    real coat_chance = microfacet_coat_chance(b);
+    mask coated = lobe < coat_chance;
     v3 facet = square_to_beckmann(u, b.alpha);
     v3 mirrored = v3_sub(v3_scale(facet, 2 * v3_dot(wi, facet)), wi);
     v3 wo = v3_pick(coated, mirrored, square_to_cosine_hemisphere(u));
     v3 h = v3_pick(coated, facet, v3_normalize(v3_add(wi, wo)));
     real d = square_to_beckmann_pdf(h, b.alpha);
     real base = wo.z * INV_PI;
-    real density = b.coat_chance * d / (4 * fabs(v3_dot(h, wo))) + (1 - b.coat_chance) * base;
+    real density = coat_chance * d / (4 * fabs(v3_dot(h, wo))) + (1 - coat_chance) * base;
     v3 f_cos = v3_add(v3_scale(b.kd, base), v3_all(microfacet_coat(b, wi, wo, h, 4 * wi.z * h.z) * d));
     mask kept = wi.z > 0 & wo.z > 0 & density > 0;
     v3 weight = v3_pick(kept, v3_scale(f_cos, 1 / density), v3_all((real)(0)));

@@ -6,19 +6,19 @@
 
 // Traits, as bits.
 enum {
-    SURFACE_LIGHT = 1,  // a ray meets it on a surface, whose mesh names it
-    DELTA_LIGHT = 2,    // seen in one direction from each point: no ray meets it by chance
-    INFINITE_LIGHT = 4, // infinitely far: shadow rays have no end
+    OPAL_SURFACE = 1,  // a ray meets it on a surface, whose mesh names it
+    OPAL_DELTA = 2,    // seen in one direction from each point: no ray meets it by chance
+    OPAL_INFINITE = 4, // infinitely far: shadow rays have no end
 };
-#define CAN_BE_MET(traits) (((traits) & DELTA_LIGHT) == 0) // by a BSDF sample
+#define OPAL_CAN_BE_MET(traits) (((traits) & OPAL_DELTA) == 0) // by a BSDF sample
 // Is it met by rays that leave the scene?
-#define IS_ENVIRONMENT(traits) (((traits) & (INFINITE_LIGHT | DELTA_LIGHT)) == INFINITE_LIGHT)
+#define OPAL_IS_ENVIRONMENT(traits) (((traits) & (OPAL_INFINITE | OPAL_DELTA)) == OPAL_INFINITE)
 
 // EMITTER(name, traits)
 #define OPAL_EMITTERS(EMITTER) \
-    EMITTER(mesh, SURFACE_LIGHT)          /* a triangle mesh that emits */ \
-    EMITTER(parallelogram, SURFACE_LIGHT) /* a parallelogram that emits, sampled as one piece */ \
-    EMITTER(point, DELTA_LIGHT)           /* a point */
+    EMITTER(mesh, OPAL_SURFACE)          /* a triangle mesh that emits */ \
+    EMITTER(parallelogram, OPAL_SURFACE) /* a parallelogram that emits, sampled as one piece */ \
+    EMITTER(point, OPAL_DELTA)           /* a point */
 
 #define OPAL_EMITTER_ENUM(name, traits) EMITTER_##name,
 enum { OPAL_EMITTERS(OPAL_EMITTER_ENUM) EMITTER_COUNT };

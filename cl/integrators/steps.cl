@@ -74,9 +74,6 @@ static v3 light_met(const Scene *scene, const Path *path, Surface s, mask hit, m
     return v3_pick(met, radiance, none);
 }
 
-// Can the surface's BSDF scatter light from direction wo, local, to wi? It need not do so.
-static mask can_scatter(Surface s, v3 wo) { return wo.z > 0; }
-
 // Samples one direction to one emitter as the light of surface s, before its BSDF is asked. Sets *wo to the direction
 // in the surface's frame. inverse_pdf includes the choice of the emitter.
 static LightSample sample_light(const Scene *scene, const Path *path, Surface s, mask active, v3 *wo) {
@@ -86,7 +83,7 @@ static LightSample sample_light(const Scene *scene, const Path *path, Surface s,
                                        path_draw_bits(scene, path, DIM_TRIANGLE), active);
     *wo = to_local(s.frame, light.d);
     light.inverse_pdf = light.inverse_pdf / choice.probability;
-    light.active = light.active & can_scatter(s, *wo);
+    light.active = light.active & bsdf_is_lit_from(scene, s.bsdf, *wo);
     return light;
 }
 
@@ -112,7 +109,7 @@ static DirectLight direct_light(const Scene *scene, const Path *path, Surface s,
         real weight = mis_weight(scene, light.discrete ? (real)(0) : bsdf_pdf * inverse_pdf);
         inverse_pdf = weight * inverse_pdf;
     }
-    v3 light_in = v3_scale(v3_mul(f, light.radiance), wo.z * inverse_pdf);
+    v3 light_in = v3_scale(v3_mul(f, light.radiance), fabs(wo.z) * inverse_pdf);
     // Light that is not finite must reach the film, where it is counted.
     mask active = light.active & ((v3_largest(light_in) > 0) | !is_finite(light_in));
     DirectLight direct = {v3_mul(path->throughput, light_in), shadow_ray(s, light), active};
@@ -127,7 +124,7 @@ static DirectLight sample_direct_light(const Scene *scene, const Path *path, Sur
     LightSample light = sample_light(scene, path, s, active, &wo);
     if (!ANY(light.active)) return no_direct_light();
     real bsdf_pdf;
-    v3 f = bsdf_eval(scene, s.bsdf, s.wi, wo, light.active, &bsdf_pdf);
+    v3 f = bsdf_eval(scene, s.bsdf, v2_of(s.u, s.v), s.wi, wo, light.active, &bsdf_pdf);
     return direct_light(scene, path, s, light, wo, f, bsdf_pdf);
 }
 
@@ -151,7 +148,8 @@ static v3 visible_light(const Scene *scene, DirectLight light) {
 // Draws the path's next segment by the BSDF. Returns the active lanes whose path still carries something.
 static mask scatter(const Scene *scene, Path *path, Surface s, mask active) {
     v2 lobe = path_draw(scene, path, DIM_LOBE);
-    BsdfSample sample = bsdf_sample(scene, s.bsdf, s.wi, path_draw(scene, path, DIM_BSDF), lobe.x, active);
+    BsdfSample sample =
+        bsdf_sample(scene, s.bsdf, v2_of(s.u, s.v), s.wi, path_draw(scene, path, DIM_BSDF), lobe.x, active);
     mask broken = active & !is_finite(sample.weight);
     if (ANY(broken)) { // the path ends, and the film counts it
         path->radiance = v3_pick(broken, sample.weight, path->radiance);

@@ -7,7 +7,7 @@
 #include "bsdfs/list.h"
 #include "emitters/list.h"
 
-#define OPAL_BSDF_FEATURE(name) OPAL_FEATURE_ROW(bsdf_##name, "bsdf_" #name)
+#define OPAL_BSDF_FEATURE(name, traits) OPAL_FEATURE_ROW(bsdf_##name, "bsdf_" #name)
 #define OPAL_EMITTER_FEATURE(name, traits) OPAL_FEATURE_ROW(emitter_##name, "emitter_" #name)
 
 // Define OPAL_FEATURE_ROW(name, shown) and expand this; `shown` is what `opal inspect` calls the feature.

@@ -70,14 +70,16 @@ kernel void warp_pdf(int which, float parameter, global const float *points, glo
     put(out, 0, stride, base, pdf);
 }
 
-kernel void bsdf_draw(SCENE_PARAMETERS, uint id, float wi_x, float wi_y, float wi_z, global const float *given,
+// The BSDF of a mesh, at uv = 0.
+kernel void bsdf_draw(SCENE_PARAMETERS, uint mesh, float wi_x, float wi_y, float wi_z, global const float *given,
                       global float *out, uint first, uint stride) {
     uint base = base_of_item(first);
     if (base >= stride) return;
     Scene scene = SCENE_OF_PARAMETERS;
     v3 wi = v3_of((real)(wi_x), (real)(wi_y), (real)(wi_z));
     v2 u = get_v2(given, 0, stride, base);
-    BsdfSample s = bsdf_sample(&scene, (uints)(id), wi, u, get(given, 2, stride, base), ALL_LANES);
+    v2 uv = v2_of((real)(0), (real)(0));
+    BsdfSample s = bsdf_sample(&scene, (uints)(meshes[mesh].bsdf), uv, wi, u, get(given, 2, stride, base), ALL_LANES);
     put_v3(out, BSDF_WO_X, stride, base, s.wo);
     put_v3(out, BSDF_WEIGHT_R, stride, base, s.weight);
     put(out, BSDF_PDF, stride, base, s.pdf);
@@ -85,14 +87,16 @@ kernel void bsdf_draw(SCENE_PARAMETERS, uint id, float wi_x, float wi_y, float w
     put(out, BSDF_DISCRETE, stride, base, s.discrete ? (real)(1) : (real)(0));
 }
 
-kernel void bsdf_value(SCENE_PARAMETERS, uint id, float wi_x, float wi_y, float wi_z, global const float *points,
+kernel void bsdf_value(SCENE_PARAMETERS, uint mesh, float wi_x, float wi_y, float wi_z, global const float *points,
                        global float *out, uint first, uint stride) {
     uint base = base_of_item(first);
     if (base >= stride) return;
     Scene scene = SCENE_OF_PARAMETERS;
     v3 wi = v3_of((real)(wi_x), (real)(wi_y), (real)(wi_z));
     real pdf;
-    v3 f = bsdf_eval(&scene, (uints)(id), wi, get_v3(points, WARP_X, stride, base), ALL_LANES, &pdf);
+    v2 uv = v2_of((real)(0), (real)(0));
+    v3 wo = get_v3(points, WARP_X, stride, base);
+    v3 f = bsdf_eval(&scene, (uints)(meshes[mesh].bsdf), uv, wi, wo, ALL_LANES, &pdf);
     put_v3(out, EVAL_R, stride, base, f);
     put(out, EVAL_PDF, stride, base, pdf);
 }

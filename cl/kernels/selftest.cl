@@ -3,17 +3,16 @@
 #include "core/math.cl"
 #include "kernels/selftest_list.h"
 
-// The sizes of OPAL_RECORDS, then the offsets of OPAL_MEMBERS.
+// The sizes and offsets of OPAL_LAYOUT.
 kernel void layout(global uint *out) {
     uint i = 0;
-#define SIZE_OF(T) out[i++] = (uint)sizeof(T);
-    OPAL_RECORDS(SIZE_OF)
-#define OFFSET_OF(T, member) \
+#define OPAL_SIZE(T) out[i++] = (uint)sizeof(T);
+#define OPAL_OFFSET(T, member) \
     { \
         T record; \
         out[i++] = (uint)((private char *)&record.member - (private char *)&record); \
     }
-    OPAL_MEMBERS(OFFSET_OF)
+    OPAL_LAYOUT
 }
 
 // The values of each of OPAL_MATH's functions at `count` numbers of its own, a multiple of LANES, one column after the

@@ -9,16 +9,24 @@
 // Records whose sizes, and members whose offsets, must be the same on both sides.
 #define OPAL_RECORDS(RECORD) \
     RECORD(BvhNode) RECORD(TriangleBlock) RECORD(Triangle) RECORD(FaceRecord) RECORD(FaceRange) RECORD(MeshRecord) \
-    RECORD(Settings) RECORD(BsdfRecord) RECORD(EmitterRecord) RECORD(LightTriangle)
+    RECORD(Settings) RECORD(EmitterRecord) RECORD(LightTriangle)
 #define OPAL_MEMBERS(MEMBER) \
     MEMBER(BvhNode, hi) MEMBER(BvhNode, child) MEMBER(TriangleBlock, id) MEMBER(Triangle, mesh) \
     MEMBER(FaceRecord, corner) MEMBER(MeshRecord, emitter) MEMBER(Settings, camera_forward) \
     MEMBER(Settings, far_clip) MEMBER(Settings, face_list_slot) MEMBER(Settings, rr_prob) \
     MEMBER(Settings, light_energy) MEMBER(Settings, filter_c) MEMBER(Settings, choices) \
-    MEMBER(BsdfRecord, u.diffuse.use_cosine) MEMBER(BsdfRecord, u.dielectric.ext_ior) \
-    MEMBER(BsdfRecord, u.microfacet.kd) MEMBER(BsdfRecord, u.phong.n) MEMBER(EmitterRecord, area) \
-    MEMBER(EmitterRecord, v) MEMBER(EmitterRecord, probability) MEMBER(EmitterRecord, other) \
+    MEMBER(EmitterRecord, area) MEMBER(EmitterRecord, v) MEMBER(EmitterRecord, probability) MEMBER(EmitterRecord, other) \
     MEMBER(LightTriangle, inverse_pdf)
+
+// Says the layout of all records by the statements OPAL_SIZE(T) and OPAL_OFFSET(T, member), which either side defines.
+#define OPAL_LAYOUT OPAL_RECORDS(OPAL_SIZE) OPAL_MEMBERS(OPAL_OFFSET) OPAL_BSDFS(OPAL_BSDF_LAYOUT)
+#define OPAL_BSDF_LAYOUT(name, traits) \
+    { \
+        typedef bsdf_##name##_record Record; \
+        OPAL_SIZE(Record) \
+        OPAL_BSDF_##name(OPAL_PARAMETER_OFFSET) \
+    }
+#define OPAL_PARAMETER_OFFSET(type, name, xml, initial, range, meaning) OPAL_OFFSET(Record, name)
 
 // Functions that rendering uses: MATH(name, on the device, on the host in double, lowest x, highest x, scale, limit).
 // The error is counted in ulp of the larger of |result| and scale; limit: what OpenCL C 1.2, table 7.4, allows in ulp,

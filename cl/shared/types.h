@@ -1,4 +1,4 @@
-// The records that host and device share, apart from BSDFs and emitters (bsdfs/list.h, emitters/list.h).
+// The records that host and device share, apart from BSDFs, textures and emitters (bsdfs/list.h and so on).
 #ifndef OPAL_TYPES_H
 #define OPAL_TYPES_H
 
@@ -56,7 +56,7 @@ typedef struct {
 } FaceRange;
 OPAL_SIZE_CHECK(FaceRange, 8);
 
-// A mesh: index of its BSDF, and of its emitter or OPAL_NONE.
+// A mesh: the first word of its BSDF's record, and the index of its emitter or OPAL_NONE.
 typedef struct {
     uint bsdf, emitter;
 } MeshRecord;

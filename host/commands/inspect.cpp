@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <set>
 
 namespace opal {
 
@@ -56,7 +57,7 @@ void print_mesh(const Mesh &mesh) {
     const auto *triangles = std::get_if<TriangleMesh>(&mesh.shape);
     row("", "{}: {}, {}{}", mesh.name,
         triangles ? fmt::format("{} triangles", triangles->triangles.size()) : "parallelogram",
-        bsdf_name(mesh.bsdf.record.kind), mesh.radiance ? ", emits " + color_text(*mesh.radiance) + " W/(m^2 sr)" : "");
+        bsdf_name(mesh.bsdf.kind()), mesh.radiance ? ", emits " + color_text(*mesh.radiance) + " W/(m^2 sr)" : "");
 }
 
 void print_scene(const SceneDescription &scene, const FlatScene &flat) {
@@ -69,10 +70,13 @@ void print_scene(const SceneDescription &scene, const FlatScene &flat) {
 
     std::map<std::string, size_t> bsdfs, emitters;
     for (const Mesh &mesh : scene.meshes)
-        ++bsdfs[bsdf_name(mesh.bsdf.record.kind)];
+        ++bsdfs[bsdf_name(mesh.bsdf.kind())];
     for (const EmitterRecord &emitter : flat.emitters)
         ++emitters[emitter_name(emitter.kind)];
-    row("bsdfs", "{} ({} different)", counts_text(bsdfs), flat.bsdfs.size());
+    std::set<uint> different;
+    for (const MeshRecord &mesh : flat.meshes)
+        different.insert(mesh.bsdf);
+    row("bsdfs", "{} ({} different)", counts_text(bsdfs), different.size());
     row("emitters", "{}", counts_text(emitters));
     for (const PointLight &light : scene.point_lights)
         row("", "point light, {} W", color_text(light.power));

@@ -79,12 +79,9 @@ private:
     }
 
     void run_bsdfs() {
-        std::vector<BsdfRecord> records;
-        for (const Bsdf &bsdf : test_.bsdfs)
-            records.push_back(bsdf.record);
-        KernelProbe probe(device_, scene_of_bsdfs(records), options_.build, *options_.sources);
+        KernelProbe probe(device_, scene_of_bsdfs(test_.bsdfs), options_.build, *options_.sources);
         std::mt19937 random(options_.seed);
-        for (unsigned id = 0; id < records.size(); id++)
+        for (unsigned id = 0; id < test_.bsdfs.size(); id++)
             if (test_.type == "ttest")
                 for (double angle : test_.angles)
                     albedo(probe, id, angle);
@@ -104,8 +101,7 @@ private:
                                 weights.add(luminance({w.x, w.y, w.z}));
                             }
                         });
-        judge_mean(fmt::format("{} at {:g} degrees", bsdf_name(test_.bsdfs[id].record.kind), angle), weights.sample(),
-                   "");
+        judge_mean(fmt::format("{} at {:g} degrees", bsdf_name(test_.bsdfs[id].kind()), angle), weights.sample(), "");
     }
 
     // Chi-square of directions, for a wi drawn in proportion to its cosine.
@@ -116,7 +112,7 @@ private:
         const int nu = test_.resolution, nv = 2 * test_.resolution;
         ConformanceCase result;
         result.is_mean = false;
-        result.name = fmt::format("{} at {:.2f} degrees", bsdf_name(test_.bsdfs[id].record.kind),
+        result.name = fmt::format("{} at {:.2f} degrees", bsdf_name(test_.bsdfs[id].kind()),
                                   std::asin(sine) * 180 / std::numbers::pi);
         result.samples = test_.sample_count > 0 ? test_.sample_count : 5000.0 * nu * nv;
         stats::ChiSquareOptions options;

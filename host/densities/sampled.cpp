@@ -40,24 +40,29 @@ void add_peak(Sampled &sampled, Vec3 w, double width) {
         }
 }
 
-double lobe_width(const BsdfRecord &bsdf) {
-    switch (bsdf.kind) {
-    case BSDF_microfacet:
-        return 2 * bsdf.u.microfacet.alpha;
-    case BSDF_phong:
-        return 1 / std::sqrt(bsdf.u.phong.n + 1);
-    default:
-        return 0; // none
-    }
-}
-
 bool is_black(Vec3 weight) { return weight.x == 0 && weight.y == 0 && weight.z == 0; }
+
+// The angle to the mirrored wi, in radians, that a fiftieth of a BSDF's samples stay within: no more than the width of
+// a lobe around it, if there is one.
+double lobe_width(KernelProbe &probe, unsigned id, Vec3 wi) {
+    const Planes drawn = probe.bsdf_sample(id, wi, probe.numbers(4096, {}));
+    std::vector<double> angles;
+    for (size_t i = 0; i < drawn.count; i++)
+        if (!is_black(drawn.vec3(BSDF_WEIGHT_R, i)))
+            angles.push_back(2 *
+                             std::asin(std::min(1.0, length(drawn.vec3(BSDF_WO_X, i) - Vec3{-wi.x, -wi.y, wi.z}) / 2)));
+    if (angles.empty())
+        return 1;
+    const auto fiftieth = angles.begin() + std::ptrdiff_t(angles.size() / 50);
+    std::nth_element(angles.begin(), fiftieth, angles.end());
+    return *fiftieth;
+}
 
 } // namespace
 
 const char *warp_name(int warp) { return warps[warp].name; }
 
-bool is_discrete(int bsdf_kind) { return bsdf_kind == BSDF_mirror || bsdf_kind == BSDF_dielectric; }
+bool is_discrete(const Bsdf &bsdf) { return !(bsdf_traits(bsdf.kind()) & OPAL_SMOOTH); }
 
 Sampled sampled_warp(KernelProbe &probe, int warp, float parameter) {
     Sampled sampled;
@@ -82,17 +87,18 @@ Sampled sampled_warp(KernelProbe &probe, int warp, float parameter) {
 }
 
 Sampled sampled_bsdf(KernelProbe &probe, unsigned id, Vec3 wi) {
-    const BsdfRecord bsdf = probe.scene().bsdfs.at(id);
+    const uint kind = bsdf_kind(probe.scene(), probe.scene().meshes.at(id));
     Sampled sampled;
-    sampled.name = bsdf_name(bsdf.kind);
-    if (is_discrete(int(bsdf.kind)))
+    sampled.name = bsdf_name(kind);
+    if (!(bsdf_traits(kind) & OPAL_SMOOTH))
         throw Error(fmt::format("a {} is discrete: its directions have no density to compare with", sampled.name));
     sampled.domain = &stats::domain(DomainKind::sphere);
     sampled.may_fail = true;
     sampled.draw = [&probe, id, wi](const Planes &numbers, stats::Histogram &histogram) {
         const Planes drawn = probe.bsdf_sample(id, wi, numbers);
         for (size_t i = 0; i < drawn.count; i++)
-            if (is_black(drawn.vec3(BSDF_WEIGHT_R, i)) && drawn.at(BSDF_PDF, i) == 0)
+            if (drawn.at(BSDF_DISCRETE, i) != 0 ||
+                (is_black(drawn.vec3(BSDF_WEIGHT_R, i)) && drawn.at(BSDF_PDF, i) == 0))
                 histogram.add_failed();
             else
                 histogram.add(drawn.vec3(BSDF_WO_X, i));
@@ -103,11 +109,10 @@ Sampled sampled_bsdf(KernelProbe &probe, unsigned id, Vec3 wi) {
     };
     sampled.splits_u = {0};
     sampled.relative_error = 1e-4; // directions in single precision leave a narrow lobe no more
-    if (const double width = lobe_width(bsdf); width > 0) {
-        add_peak(sampled, {-wi.x, -wi.y, wi.z}, width);
-        const std::vector<double> grazing = stats::splits_about(wi.z, wi.z / 2, -1, 1); // where 1 / h.wo is steep
-        if (bsdf.kind == BSDF_microfacet && wi.z < 0.2)
-            sampled.splits_u.insert(sampled.splits_u.end(), grazing.begin(), grazing.end());
+    add_peak(sampled, {-wi.x, -wi.y, wi.z}, lobe_width(probe, id, wi));
+    if (wi.z < 0.2) { // where densities over half vectors, 1 / h.wo, are steep
+        const std::vector<double> grazing = stats::splits_about(wi.z, wi.z / 2, -1, 1);
+        sampled.splits_u.insert(sampled.splits_u.end(), grazing.begin(), grazing.end());
     }
     return sampled;
 }

@@ -23,10 +23,10 @@ struct Sampled {
 const char *warp_name(int warp);
 Sampled sampled_warp(KernelProbe &probe, int warp, float parameter);
 
-// The BSDF `id` of the probe's scene, over the whole sphere. A draw of weight 0 whose density is 0 too has failed.
-// Error: a discrete BSDF, which has no density.
+// The BSDF of mesh `id` of the probe's scene, over the whole sphere. A draw has failed if its weight and density are 0,
+// or if it went in a single direction, which is no part of the density. Error: a discrete BSDF, which has no density.
 Sampled sampled_bsdf(KernelProbe &probe, unsigned id, Vec3 wi);
-bool is_discrete(int bsdf_kind);
+bool is_discrete(const Bsdf &bsdf); // and nothing else
 
 // The lights of the probe's scene, which lie in the unit square of the plane z = 0 and are no delta lights, as they are
 // seen from a point: both in the scene's own units.

@@ -52,29 +52,40 @@ Target open_warp(int warp, const Parameters &parameters, const Device &device, c
     return target;
 }
 
+std::string with_hyphens(std::string name) {
+    std::replace(name.begin(), name.end(), '_', '-');
+    return name;
+}
+
 // As a scene would say it, so that defaults and checks are the scene's.
-Bsdf parse_parameters(const std::string &kind, const Parameters &parameters) {
-    std::string xml = fmt::format("<bsdf type=\"{}\">", kind);
-    for (const TargetParameter &row : target_parameters())
-        if (const auto found = parameters.find(row.name); found != parameters.end() && !row.tag.empty()) {
-            const bool single = row.tag == "color" && split(found->second).size() == 1;
-            const std::string value = single ? fmt::format("{0} {0} {0}", found->second) : found->second;
-            xml += fmt::format("<{} name=\"{}\" value=\"{}\"/>", row.tag, row.xml_name, value);
-        }
+Bsdf parse_parameters(uint kind, const Parameters &parameters) {
+    std::string xml = fmt::format("<bsdf type=\"{}\">", bsdf_name(kind));
+    std::set<std::string> known = {"theta", "phi"};
+    for (const Parameter &parameter : bsdf_parameters(kind)) {
+        const std::string name = with_hyphens(parameter.name);
+        known.insert(name);
+        const auto found = parameters.find(name);
+        if (found == parameters.end())
+            continue;
+        const bool grey = parameter.type == ParameterType::COLOR && split(found->second).size() == 1;
+        const std::string value = grey ? fmt::format("{0} {0} {0}", found->second) : found->second;
+        xml += fmt::format("<{} name=\"{}\" value=\"{}\"/>", xml_tag(parameter.type), parameter.xml_name, value);
+    }
+    allow(parameters, fmt::format("bsdf:{}", bsdf_name(kind)), known);
     const XmlDocument document("command line, as XML", xml + "</bsdf>");
     return parse_bsdf(document.root(), {});
 }
 
-Target open_bsdf(const std::string &kind, const Parameters &parameters, const Device &device, const BuildOptions &build,
+Target open_bsdf(uint kind, const Parameters &parameters, const Device &device, const BuildOptions &build,
                  const Sources &sources) {
     const Bsdf bsdf = parse_parameters(kind, parameters);
     const double theta = number_of(parameters, "theta", 30) * std::numbers::pi / 180,
                  phi = number_of(parameters, "phi", 0) * std::numbers::pi / 180;
     const Vec3 wi = {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
     Target target;
-    target.probe = std::make_unique<KernelProbe>(device, scene_of_bsdfs({bsdf.record}), build, sources);
+    target.probe = std::make_unique<KernelProbe>(device, scene_of_bsdfs({bsdf}), build, sources);
     target.sampled = sampled_bsdf(*target.probe, 0, wi);
-    target.description = kind;
+    target.description = bsdf_name(kind);
     for (const auto &[name, value] : parameters)
         target.description += fmt::format(" {} {}", name, value);
     if (!parameters.count("theta"))
@@ -84,7 +95,7 @@ Target open_bsdf(const std::string &kind, const Parameters &parameters, const De
 
 Mesh light_of(examples::Shape shape, double radiance) {
     Mesh mesh = examples::light(std::move(shape), radiance);
-    mesh.bsdf = default_bsdf();
+    mesh.bsdf = Bsdf();
     return mesh;
 }
 
@@ -133,15 +144,41 @@ Target open_light(const LightRow &row, const Parameters &parameters, const Param
 
 std::vector<TargetName> all_targets() {
     std::vector<TargetName> names = warp_names;
-    names.insert(names.end(), {{"bsdf:diffuse", "albedo, use-cosine"},
-                               {"bsdf:microfacet", "alpha, int-ior, ext-ior, kd"},
-                               {"bsdf:phong", "kd, ks, pd, n"}});
-    for (TargetName &name : names)
-        if (name.name.starts_with("bsdf:"))
-            name.parameters += ", theta, phi";
+    for (uint kind = 0; kind < BSDF_COUNT; kind++)
+        if (bsdf_traits(kind) & OPAL_SMOOTH) {
+            std::string parameters;
+            for (const Parameter &parameter : bsdf_parameters(kind))
+                parameters += with_hyphens(parameter.name) + ", ";
+            names.push_back({fmt::format("bsdf:{}", bsdf_name(kind)), parameters + "theta, phi"});
+        }
     for (const LightRow &light : lights)
         names.push_back({"light:" + std::string(light.name), "triangle-choice, emitter-choice"});
     return names;
+}
+
+// Adds to the help of parameter `name` what it means to `owner`.
+void add_meaning(std::vector<TargetParameter> &all, const std::string &name, const std::string &owner,
+                 const std::string &meaning) {
+    const auto found = std::find_if(all.begin(), all.end(), [&](const TargetParameter &p) { return p.name == name; });
+    const std::string text = fmt::format("{}: {}", owner, meaning);
+    if (found == all.end())
+        all.push_back({name, text});
+    else
+        found->help += "; " + text;
+}
+
+std::vector<TargetParameter> all_parameters() {
+    std::vector<TargetParameter> all = {{"theta", "bsdf:...: of the incident direction to the normal, degrees [30]"},
+                                        {"phi", "bsdf:...: of the incident direction, degrees [0]"}};
+    for (int warp = 0; warp < WARP_COUNT; warp++)
+        if (const auto &[parameter, otherwise] = warp_defaults[warp]; *parameter)
+            add_meaning(all, parameter, warp_name(warp), fmt::format("above 0 [{:g}]", otherwise));
+    for (uint kind = 0; kind < BSDF_COUNT; kind++)
+        if (bsdf_traits(kind) & OPAL_SMOOTH)
+            for (const Parameter &p : bsdf_parameters(kind))
+                add_meaning(all, with_hyphens(p.name), bsdf_name(kind),
+                            fmt::format("{}, {} [{}]", p.meaning, text_of(p), text_of_initial(p)));
+    return all;
 }
 
 } // namespace
@@ -152,19 +189,7 @@ const std::vector<TargetName> &targets() {
 }
 
 const std::vector<TargetParameter> &target_parameters() {
-    static const std::vector<TargetParameter> all = {
-        {"alpha", "float", "alpha", "roughness of beckmann and microfacet"},
-        {"n", "float", "n", "exponent of phong"},
-        {"theta", "", "", "of the incident direction to the normal, degrees [30]"},
-        {"phi", "", "", "of the incident direction, degrees [0]"},
-        {"albedo", "color", "albedo", "of diffuse: one number or three"},
-        {"use-cosine", "boolean", "use_cosine", "of diffuse: true or false"},
-        {"kd", "color", "kd", "diffuse reflectance of microfacet and phong: one number or three"},
-        {"ks", "color", "ks", "specular reflectance of phong: one number or three"},
-        {"pd", "float", "pd", "share of the diffuse part of phong"},
-        {"int-ior", "float", "intIOR", "of microfacet"},
-        {"ext-ior", "float", "extIOR", "of microfacet"},
-    };
+    static const std::vector<TargetParameter> all = all_parameters();
     return all;
 }
 
@@ -175,8 +200,9 @@ Target open_target(const std::string &name, const Parameters &parameters, const 
         return open_light(find_row(lights, "light", name.substr(6)), parameters, axes, device, build, sources);
     if (!axes.empty())
         throw Error(fmt::format("--{} means something for light:... only", axes.begin()->first));
-    if (name.starts_with("bsdf:"))
-        return open_bsdf(name.substr(5), parameters, device, build, sources);
+    for (uint kind = 0; kind < BSDF_COUNT; kind++)
+        if (name == fmt::format("bsdf:{}", bsdf_name(kind)))
+            return open_bsdf(kind, parameters, device, build, sources);
     for (int warp = 0; warp < WARP_COUNT; warp++)
         if (name == warp_name(warp))
             return open_warp(warp, parameters, device, build, sources);

@@ -21,9 +21,9 @@ struct TargetName {
 };
 const std::vector<TargetName> &targets();
 
-// A parameter as the command line names it, with its XML tag and name where BSDFs have it.
+// A parameter as the command line names it.
 struct TargetParameter {
-    std::string name, tag, xml_name, help;
+    std::string name, help;
 };
 const std::vector<TargetParameter> &target_parameters();
 

@@ -49,6 +49,8 @@ public:
     Expansion(const std::map<std::string, std::string> &files, int lanes) : files_(files), lanes_(lanes) {}
 
     void append(const std::string &name, const std::string &asked_from) {
+        if (name.ends_with("/*.cl"))
+            return append_folder(name.substr(0, name.size() - 4), asked_from);
         const auto found = files_.find(name);
         if (found == files_.end())
             throw Error(fmt::format("{}: no file \"{}\" below cl/; available: {}", asked_from, name, names_of(files_)));
@@ -71,6 +73,14 @@ private:
     bool left_out(const std::string &name) const {
         const char *other_width = lanes_ == 1 ? "many_lanes/" : "one_lane/";
         return done_.count(name) != 0 || name.find(other_width) != std::string::npos;
+    }
+
+    // The .cl files of a folder, "bsdfs/", in the order of their names, without those that are expanded already.
+    void append_folder(const std::string &folder, const std::string &asked_from) {
+        for (const auto &[name, text] : files_)
+            if (name.starts_with(folder) && name.ends_with(".cl") &&
+                name.find('/', folder.size()) == std::string::npos && !left_out(name))
+                append(name, asked_from);
     }
 
     void append_line(const std::string &name, const std::string &line, int number) {
@@ -130,6 +140,10 @@ std::string program_text(const Features &features, const BuildOptions &options, 
     text += fmt::format("#define OPAL_HAS_" #name " {}\n", int(features[FEATURE_##name]));
     OPAL_FEATURES
 #undef OPAL_FEATURE_ROW
+#define OPAL_TEXTURED_ROW(name, traits)                                                                                \
+    text += fmt::format("#define OPAL_TEXTURED_bsdf_" #name " {}\n", features.textured[BSDF_##name]);
+    OPAL_BSDFS(OPAL_TEXTURED_ROW)
+#undef OPAL_TEXTURED_ROW
 #define OPAL_AXIS_DEFINE(axis, help)                                                                                   \
     text += fmt::format("#define OPAL_AXIS_" #axis " {}\n", features.axes[AXIS_##axis]);
     OPAL_AXES(OPAL_AXIS_DEFINE)

@@ -26,7 +26,8 @@ struct Sources {
     static const Sources &embedded();
     static Sources from_folder(const std::string &folder);
     // Text of `file` for a kernel of so many lanes, with every #include "x" expanded once, in place, between #line
-    // directives. Files in a folder many_lanes/ are left out of programs of one lane, those in one_lane/ of all others.
+    // directives. #include "folder/*.cl" stands for all .cl files of that folder but the file it stands in. Files in a
+    // folder many_lanes/ are left out of programs of one lane, those in one_lane/ of all others.
     // Error: file:line of an include that is not there, and what is.
     std::string expand(const std::string &file, int lanes) const;
 };

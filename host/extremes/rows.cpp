@@ -43,7 +43,7 @@ std::function<SceneDescription(double)> as_detail(SceneDescription (*scene)()) {
 }
 
 // A floor under a light, seen from the side.
-SceneDescription floor_under(Mesh lamp, const BsdfRecord &floor, double seen_from = 0.6) {
+SceneDescription floor_under(Mesh lamp, const Bsdf &floor, double seen_from = 0.6) {
     return path_traced({made_of(quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), floor), std::move(lamp)},
                        camera({0.1, seen_from, -0.9}, {0.1, 0, 0.1}, 40), 3);
 }
@@ -140,7 +140,7 @@ SceneDescription with_copies(SceneDescription scene, double copies) {
     for (int copy = 1; copy < int(copies); copy++)
         for (size_t m = 0; m < meshes; m++) {
             Mesh mesh = scene.meshes[m];
-            if (mesh.radiance || mesh.bsdf.record.kind == BSDF_dielectric)
+            if (mesh.radiance || mesh.bsdf.kind() == BSDF_dielectric)
                 continue;
             auto &triangles = std::get<TriangleMesh>(mesh.shape).triangles;
             // Each pair of triangles shares its first corner and its diagonal.

@@ -1,5 +1,7 @@
 #include "flatten/features.h"
 
+#include "textures/list.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +34,7 @@ public:
             description.strategy[AXIS_lighting] == CHOICE_lighting_bsdf;
     }
 
-#define OPAL_DECIDE_BSDF(name)                                                                                         \
+#define OPAL_DECIDE_BSDF(name, traits)                                                                                 \
     Decision bsdf_##name() const { return bsdf(BSDF_##name); }
     OPAL_BSDFS(OPAL_DECIDE_BSDF)
 #undef OPAL_DECIDE_BSDF
@@ -45,7 +47,7 @@ public:
     Decision bsdf(uint kind) const {
         if (unlit)
             return {false, "this integrator asks no BSDF"};
-        const auto has = [&](const MeshRecord &mesh) { return scene.bsdfs[mesh.bsdf].kind == kind; };
+        const auto has = [&](const MeshRecord &mesh) { return bsdf_kind(scene, mesh) == kind; };
         return counted(std::size_t(std::count_if(scene.meshes.begin(), scene.meshes.end(), has)), scene.meshes.size(),
                        "mesh", "meshes");
     }
@@ -53,7 +55,7 @@ public:
     Decision emitter(uint kind) const {
         if (unlit)
             return {false, "this integrator asks no emitter"};
-        if (!CAN_BE_MET(emitter_traits(kind)) && bsdf_sampling_only)
+        if (!OPAL_CAN_BE_MET(emitter_traits(kind)) && bsdf_sampling_only)
             return {false, fmt::format("a BSDF sample never hits a {} light", emitter_name(kind))};
         const auto has = [&](const EmitterRecord &emitter) { return emitter.kind == kind; };
         return counted(std::size_t(std::count_if(scene.emitters.begin(), scene.emitters.end(), has)),
@@ -128,15 +130,32 @@ int find_hemisphere(const SceneDescription &description, const FlatScene &scene,
     if (chosen != CHOICE_hemisphere_material)
         return chosen;
     std::size_t cosine = 0, all = 0;
-    for (const BsdfRecord &record : scene.bsdfs)
-        if (record.kind == BSDF_diffuse) {
+    for (const MeshRecord &mesh : scene.meshes)
+        if (bsdf_kind(scene, mesh) == BSDF_diffuse) {
             all++;
-            cosine += record.u.diffuse.use_cosine != 0;
+            cosine += record_of<bsdf_diffuse_record>(scene.bsdfs, mesh.bsdf).use_cosine != 0;
         }
     if (all == 0 || (cosine > 0 && cosine < all))
         return chosen;
     reason = cosine ? "all diffuse materials use_cosine" : "no diffuse material has use_cosine";
     return cosine ? CHOICE_hemisphere_cosine : CHOICE_hemisphere_uniform;
+}
+
+// The parameters of each kind of BSDF that have a texture on some mesh; all where it is decided at run time.
+std::array<uint, BSDF_COUNT> find_textured(const FlatScene &scene, bool specialise) {
+    std::array<uint, BSDF_COUNT> textured{};
+    if (TEXTURE_COUNT > 0 && !specialise)
+        textured.fill(~0u);
+    for (const MeshRecord &mesh : scene.meshes) {
+        const uint kind = bsdf_kind(scene, mesh);
+        uint place = 0;
+        for (const Parameter &parameter : bsdf_parameters(kind)) {
+            if (parameter.texture_word && scene.bsdfs[mesh.bsdf + parameter.texture_word] != OPAL_UNTEXTURED)
+                textured[kind] |= 1u << place;
+            place++;
+        }
+    }
+    return textured;
 }
 
 } // namespace
@@ -169,6 +188,7 @@ Features find_features(const SceneDescription &description, const FlatScene &sce
     }
     if (specialise)
         features.axes[AXIS_hemisphere] = find_hemisphere(description, scene, features.axis_reasons[AXIS_hemisphere]);
+    features.textured = find_textured(scene, specialise);
     return features;
 }
 
@@ -178,6 +198,8 @@ Features shared_features(const std::vector<FlatScene> &scenes) {
         for (std::size_t i = 0; i < shared.list.size(); i++)
             if (scene.features.list[i].on && !shared.list[i].on)
                 shared.list[i] = scene.features.list[i];
+        for (std::size_t kind = 0; kind < shared.textured.size(); kind++)
+            shared.textured[kind] |= scene.features.textured[kind];
         for (int axis = 0; axis < AXIS_COUNT; axis++)
             if (scene.features.axes[axis] != shared.axes[axis]) {
                 shared.axes[axis] = -1;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "base/math.h"
-#include "bsdfs/list.h"
 #include "emitters/list.h"
 #include "kernels/features.h"
 #include "scene/scene.h"
@@ -24,6 +23,7 @@ struct Feature {
 // decided at run time.
 struct Features {
     std::array<Feature, FEATURE_COUNT> list; // by FEATURE_*
+    std::array<uint, BSDF_COUNT> textured{}; // by BSDF_*: the parameters that have a texture, a bit each in their order
     std::array<int, AXIS_COUNT> axes{};      // CHOICE_* or -1
     std::array<std::string, AXIS_COUNT> axis_reasons;
     bool operator[](unsigned feature) const { return list[feature].on; }
@@ -45,6 +45,9 @@ struct FlatScene {
     double sah_cost = 0;    // of the tree, in triangle block tests and node visits
     double bvh_seconds = 0; // wall time of the build
 };
+
+// The kind of a mesh's BSDF (BSDF_*).
+inline uint bsdf_kind(const FlatScene &scene, const MeshRecord &mesh) { return scene.bsdfs[mesh.bsdf]; }
 
 // lanes: the width that the kernel will have; decides whether triangles are listed beside the tree.
 FlatScene flatten(const SceneDescription &scene, int lanes);

@@ -59,21 +59,22 @@ void fill_strategy(const SceneDescription &description, const Flattening &flatte
     std::copy(description.strategy.choices.begin(), description.strategy.choices.end(), settings.choices);
 }
 
-// Applies --hemisphere to a material, so that the device need not read the option.
-BsdfRecord with_hemisphere(BsdfRecord record, int hemisphere) {
-    if (record.kind == BSDF_diffuse && hemisphere != CHOICE_hemisphere_material)
-        record.u.diffuse.use_cosine = hemisphere == CHOICE_hemisphere_cosine;
-    return record;
+// The words of a material after --hemisphere, so that the device need not read the option.
+std::vector<uint> words_with_hemisphere(const Bsdf &bsdf, int hemisphere) {
+    if (!bsdf.is<bsdf_diffuse_record>() || hemisphere == CHOICE_hemisphere_material)
+        return bsdf.words;
+    auto record = bsdf.as<bsdf_diffuse_record>();
+    record.use_cosine = hemisphere == CHOICE_hemisphere_cosine;
+    return words_of(record);
 }
 
 void gather_bsdfs(const SceneDescription &description, FlatScene &scene) {
-    std::map<std::string, uint> known; // index in scene.bsdfs by the record's bytes
+    std::map<std::vector<uint>, uint> known; // first word of the record in scene.bsdfs
     for (const Mesh &mesh : description.meshes) {
-        const BsdfRecord record = with_hemisphere(mesh.bsdf.record, description.strategy[AXIS_hemisphere]);
-        const std::string bytes(reinterpret_cast<const char *>(&record), sizeof record);
-        const auto [found, is_new] = known.try_emplace(bytes, uint(scene.bsdfs.size()));
+        const auto words = words_with_hemisphere(mesh.bsdf, description.strategy[AXIS_hemisphere]);
+        const auto [found, is_new] = known.try_emplace(words, uint(scene.bsdfs.size()));
         if (is_new)
-            scene.bsdfs.push_back(record);
+            scene.bsdfs.insert(scene.bsdfs.end(), words.begin(), words.end());
         scene.meshes.push_back({found->second, OPAL_NONE});
     }
 }

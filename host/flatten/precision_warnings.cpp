@@ -18,7 +18,7 @@ constexpr double ray_offset = 1.4e-6;    // of a ray's origin from its surface: 
 constexpr float min_alpha = 1e-6f, max_phong_exponent = 1e8f; // the ends of the tested ranges
 constexpr double min_radiance = 1e-18, max_radiance = 1e18;   // the film sums squares in float
 
-float max_component(const float (&color)[3]) { return std::max({color[0], color[1], color[2]}); }
+float largest(const ColorParameter &color) { return std::max({color.value[0], color.value[1], color.value[2]}); }
 
 class Checker {
 public:
@@ -40,7 +40,7 @@ public:
             if (mesh.radiance)
                 check_light(mesh, *std::max_element(mesh.radiance->begin(), mesh.radiance->end()),
                             flat_.meshes[i].emitter != OPAL_NONE);
-            check_bsdf(mesh.bsdf.record, mesh.bsdf.place.line ? mesh.bsdf.place : mesh.place);
+            check_bsdf(mesh.bsdf, mesh.bsdf.place.line ? mesh.bsdf.place : mesh.place);
         }
         return std::move(lines_);
     }
@@ -78,32 +78,50 @@ private:
                 radiance);
     }
 
-    void check_bsdf(const BsdfRecord &record, const SourcePlace &place) {
-        if (record.kind == BSDF_diffuse && max_component(record.u.diffuse.albedo) > 1)
+    void check_bsdf(const Bsdf &bsdf, const SourcePlace &place) {
+        switch (bsdf.kind()) {
+        case BSDF_diffuse:
+            return check(bsdf.as<bsdf_diffuse_record>(), place);
+        case BSDF_dielectric:
+            return check(bsdf.as<bsdf_dielectric_record>(), place);
+        case BSDF_microfacet:
+            return check(bsdf.as<bsdf_microfacet_record>(), place);
+        case BSDF_phong:
+            return check(bsdf.as<bsdf_phong_record>(), place);
+        }
+    }
+
+    void check(const bsdf_diffuse_record &diffuse, const SourcePlace &place) {
+        if (const float albedo = largest(diffuse.albedo); albedo > 1)
             add_warning(place, "albedo {:g} is above 1: more light leaves than comes, and paths may grow for ever",
-                        max_component(record.u.diffuse.albedo));
-        if (record.kind == BSDF_dielectric && record.u.dielectric.int_ior == record.u.dielectric.ext_ior)
+                        albedo);
+    }
+
+    void check(const bsdf_dielectric_record &dielectric, const SourcePlace &place) {
+        if (dielectric.int_ior.value == dielectric.ext_ior.value)
             add_warning(place, "intIOR and extIOR are both {:g}: the surface cannot be seen, and costs a bounce",
-                        record.u.dielectric.int_ior);
-        if (record.kind == BSDF_microfacet && record.u.microfacet.int_ior == record.u.microfacet.ext_ior)
-            add_warning(place, "intIOR and extIOR are both {:g}: the coat reflects nothing",
-                        record.u.microfacet.int_ior);
-        if (record.kind == BSDF_microfacet && record.u.microfacet.alpha < min_alpha)
+                        dielectric.int_ior.value);
+    }
+
+    void check(const bsdf_microfacet_record &microfacet, const SourcePlace &place) {
+        if (microfacet.int_ior.value == microfacet.ext_ior.value)
+            add_warning(place, "intIOR and extIOR are both {:g}: the coat reflects nothing", microfacet.int_ior.value);
+        if (microfacet.alpha.value < min_alpha)
             add_warning(
                 place,
                 "alpha {:g} is below {:g}, the least that was tested: a mirror or dielectric is what it looks like",
-                record.u.microfacet.alpha, min_alpha);
-        if (record.kind == BSDF_phong) {
-            const PhongParams &p = record.u.phong;
-            const float reflected = p.pd * max_component(p.kd) + (1 - p.pd) * max_component(p.ks);
-            if (reflected > 1)
-                add_warning(
-                    place, "kd and ks reflect {:g}, above 1: more light leaves than comes, and paths may grow for ever",
-                    reflected);
-            if (p.n > max_phong_exponent)
-                add_warning(place, "n {:g} is above {:g}, the most that was tested: a mirror is what it looks like",
-                            p.n, max_phong_exponent);
-        }
+                microfacet.alpha.value, min_alpha);
+    }
+
+    void check(const bsdf_phong_record &phong, const SourcePlace &place) {
+        const float pd = phong.pd.value, reflected = pd * largest(phong.kd) + (1 - pd) * largest(phong.ks);
+        if (reflected > 1)
+            add_warning(place,
+                        "kd and ks reflect {:g}, above 1: more light leaves than comes, and paths may grow for ever",
+                        reflected);
+        if (phong.n.value > max_phong_exponent)
+            add_warning(place, "n {:g} is above {:g}, the most that was tested: a mirror is what it looks like",
+                        phong.n.value, max_phong_exponent);
     }
 };
 

@@ -40,12 +40,14 @@ Planes corner_numbers() {
     return numbers;
 }
 
-FlatScene scene_of_bsdfs(const std::vector<BsdfRecord> &bsdfs) {
+FlatScene scene_of_bsdfs(const std::vector<Bsdf> &bsdfs) {
     SceneDescription description;
     description.strategy.specialise = false;
-    FlatScene scene = flatten(description, 1);
-    scene.bsdfs = bsdfs;
-    return scene;
+    for (const Bsdf &bsdf : bsdfs) {
+        description.meshes.emplace_back();
+        description.meshes.back().bsdf = bsdf;
+    }
+    return flatten(description, 1);
 }
 
 struct KernelProbe::OnDevice {

@@ -51,10 +51,11 @@ public:
 
     Planes warp_sample(int warp, float parameter, const Planes &numbers);     // WARP_*
     Planes warp_pdf(int warp, float parameter, std::span<const Vec3> points); // one plane
-    Planes bsdf_sample(unsigned id, Vec3 wi, const Planes &numbers);          // BSDF_*: plane 0, 1 direction, 2 lobe
-    Planes bsdf_eval(unsigned id, Vec3 wi, std::span<const Vec3> points);     // EVAL_*
-    Planes light_sample(Vec3 from, const Planes &numbers);                    // LIGHT_*, in flattened units
-    Planes trace(const Planes &rays);                                         // RAY_* -> HIT_*
+    // Of the BSDF of mesh `id`:
+    Planes bsdf_sample(unsigned id, Vec3 wi, const Planes &numbers);      // BSDF_*: plane 0, 1 direction, 2 lobe
+    Planes bsdf_eval(unsigned id, Vec3 wi, std::span<const Vec3> points); // EVAL_*
+    Planes light_sample(Vec3 from, const Planes &numbers);                // LIGHT_*, in flattened units
+    Planes trace(const Planes &rays);                                     // RAY_* -> HIT_*
 
     const FlatScene &scene() const { return scene_; }
     const Device &device() const { return device_; }
@@ -71,9 +72,9 @@ private:
     std::unique_ptr<OnDevice> on_device_;
 };
 
-// An empty scene with these BSDFs, numbered as here. Every feature is on and every axis decided at run time, so that
-// one compiled program serves all.
-FlatScene scene_of_bsdfs(const std::vector<BsdfRecord> &bsdfs);
+// A scene of meshes without triangles that have these BSDFs, in this order. Every feature is on and every axis decided
+// at run time, so that one compiled program serves all.
+FlatScene scene_of_bsdfs(const std::vector<Bsdf> &bsdfs);
 
 Planes planes_of(std::span<const Vec3> points);
 

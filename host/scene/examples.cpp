@@ -14,39 +14,18 @@ Camera camera(Vec3 from, Vec3 to, double fov) {
     return camera;
 }
 
-BsdfRecord diffuse(double albedo, bool use_cosine) {
-    BsdfRecord record{};
-    record.kind = BSDF_diffuse;
-    record.u.diffuse = {{float(albedo), float(albedo), float(albedo)}, use_cosine};
-    return record;
+Bsdf diffuse(double albedo, bool use_cosine) { return bsdf_diffuse_record{.albedo = albedo, .use_cosine = use_cosine}; }
+
+Bsdf mirror() { return bsdf_mirror_record{}; }
+
+Bsdf dielectric(double int_ior) { return bsdf_dielectric_record{.int_ior = int_ior, .ext_ior = 1}; }
+
+Bsdf microfacet(double alpha, double kd) {
+    return bsdf_microfacet_record{.alpha = alpha, .int_ior = 1.5, .ext_ior = 1, .kd = kd};
 }
 
-BsdfRecord mirror() {
-    BsdfRecord record{};
-    record.kind = BSDF_mirror;
-    return record;
-}
-
-BsdfRecord dielectric(double int_ior) {
-    BsdfRecord record{};
-    record.kind = BSDF_dielectric;
-    record.u.dielectric = {float(int_ior), 1};
-    return record;
-}
-
-BsdfRecord microfacet(double alpha, double kd) {
-    BsdfRecord record{};
-    record.kind = BSDF_microfacet;
-    record.u.microfacet = {float(alpha), 1.5f, 1, float(1 - kd), {float(kd), float(kd), float(kd)}};
-    return record;
-}
-
-BsdfRecord phong(double exponent, double reflectance) {
-    BsdfRecord record{};
-    record.kind = BSDF_phong;
-    const float r = float(reflectance);
-    record.u.phong = {{r, r, r}, 0.5f, {r, r, r}, float(exponent)};
-    return record;
+Bsdf phong(double exponent, double reflectance) {
+    return bsdf_phong_record{.kd = reflectance, .ks = reflectance, .n = exponent};
 }
 
 TriangleMesh mesh_of(std::vector<Vec3> positions, const std::vector<std::array<unsigned, 3>> &triangles) {
@@ -73,10 +52,10 @@ TriangleMesh cube(Vec3 center, double half_side, bool inwards) {
     return mesh_of(std::move(corners), triangles);
 }
 
-Mesh made_of(Shape shape, const BsdfRecord &bsdf) {
+Mesh made_of(Shape shape, const Bsdf &bsdf) {
     Mesh mesh;
     mesh.shape = std::move(shape);
-    mesh.bsdf.record = bsdf;
+    mesh.bsdf = bsdf;
     return mesh;
 }
 

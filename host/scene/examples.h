@@ -11,11 +11,11 @@ namespace opal::examples {
 Camera camera(Vec3 from, Vec3 to, double fov);
 
 // Grey materials. Indices of refraction are those inside; outside is a vacuum.
-BsdfRecord diffuse(double albedo, bool use_cosine = true);
-BsdfRecord mirror();
-BsdfRecord dielectric(double int_ior = 1.5);
-BsdfRecord microfacet(double alpha, double kd = 0.3);        // index 1.5
-BsdfRecord phong(double exponent, double reflectance = 0.5); // kd = ks = reflectance; half of the samples are diffuse
+Bsdf diffuse(double albedo, bool use_cosine = true);
+Bsdf mirror();
+Bsdf dielectric(double int_ior = 1.5);
+Bsdf microfacet(double alpha, double kd = 0.3);        // index 1.5
+Bsdf phong(double exponent, double reflectance = 0.5); // kd = ks = reflectance; half of the samples are diffuse
 
 // Triangles without vertex normals, by their corners' indices.
 TriangleMesh mesh_of(std::vector<Vec3> positions, const std::vector<std::array<unsigned, 3>> &triangles);
@@ -25,7 +25,7 @@ TriangleMesh quad(Vec3 o, Vec3 u, Vec3 v);
 TriangleMesh cube(Vec3 center, double half_side, bool inwards = false);
 
 using Shape = std::variant<TriangleMesh, Parallelogram>;
-Mesh made_of(Shape shape, const BsdfRecord &bsdf);
+Mesh made_of(Shape shape, const Bsdf &bsdf);
 // A grey area light that reflects nothing; radiance in W / (m^2 sr).
 Mesh light(Shape shape, double radiance);
 

@@ -10,13 +10,20 @@ std::string SourcePlace::text() const {
     return column == 0 ? fmt::format("{}:{}", file, line) : fmt::format("{}:{}:{}", file, line, column);
 }
 
-#define OPAL_NAME(name) #name,
 const char *bsdf_name(unsigned kind) {
-    static const char *const names[] = {OPAL_BSDFS(OPAL_NAME)};
+#define OPAL_BSDF_NAME(name, traits) #name,
+    static const char *const names[] = {OPAL_BSDFS(OPAL_BSDF_NAME)};
     return names[kind];
 }
 
 #undef OPAL_NAME
+
+unsigned bsdf_traits(unsigned kind) {
+#define OPAL_BSDF_TRAITS(name, traits) traits,
+    static const unsigned all[] = {OPAL_BSDFS(OPAL_BSDF_TRAITS)};
+#undef OPAL_BSDF_TRAITS
+    return all[kind];
+}
 
 const char *emitter_name(unsigned kind) {
 #define OPAL_NAME(name, traits) #name,
@@ -25,9 +32,9 @@ const char *emitter_name(unsigned kind) {
     return names[kind];
 }
 
-int emitter_traits(unsigned kind) {
+unsigned emitter_traits(unsigned kind) {
 #define OPAL_TRAITS(name, traits) traits,
-    static const int all[] = {OPAL_EMITTERS(OPAL_TRAITS)};
+    static const unsigned all[] = {OPAL_EMITTERS(OPAL_TRAITS)};
 #undef OPAL_TRAITS
     return all[kind];
 }

@@ -3,8 +3,8 @@
 
 #include "base/color.h"
 #include "base/math.h"
-#include "bsdfs/list.h"
 #include "emitters/list.h"
+#include "scene/parameters.h"
 #include "scene/strategy.h"
 #include "shared/types.h"
 
@@ -25,12 +25,21 @@ struct SourcePlace {
 
 // Names of kinds, as the XML gives them: "diffuse", "mesh".
 const char *bsdf_name(unsigned kind);    // kind: BSDF_*
+unsigned bsdf_traits(unsigned kind);     // OPAL_SMOOTH and so on, as bits
 const char *emitter_name(unsigned kind); // kind: EMITTER_*
-int emitter_traits(unsigned kind);       // SURFACE_LIGHT | ...
+unsigned emitter_traits(unsigned kind);  // OPAL_DELTA and so on, as bits
 
+// A material: the record of its kind, ready for the device. By default a grey diffuse one.
 struct Bsdf {
-    BsdfRecord record{}; // kind and parameters, ready for the device
+    std::vector<uint> words; // of a bsdf_NAME_record
     SourcePlace place;
+
+    Bsdf() : Bsdf(bsdf_diffuse_record{}) {}
+    template <class Record> Bsdf(const Record &record) : words(words_of(record)) {}
+
+    uint kind() const { return words[0]; } // BSDF_*
+    template <class Record> bool is() const { return kind() == Record{}.kind; }
+    template <class Record> Record as() const { return record_of<Record>(words); } // is<Record>() must hold
 };
 
 struct TriangleMesh {

@@ -39,11 +39,10 @@ cl::Program build_selftest(const Device &device, BuildOptions build, const Sourc
 }
 
 double wrong_layouts(const Device &device, const cl::Program &program) {
-    const std::vector<cl_uint> host = {
-#define OPAL_SIZE(T) cl_uint(sizeof(T)),
-        OPAL_RECORDS(OPAL_SIZE)
-#define OPAL_OFFSET(T, member) cl_uint(offsetof(T, member)),
-            OPAL_MEMBERS(OPAL_OFFSET)};
+    std::vector<cl_uint> host;
+#define OPAL_SIZE(T) host.push_back(cl_uint(sizeof(T)));
+#define OPAL_OFFSET(T, member) host.push_back(cl_uint(offsetof(T, member)));
+    OPAL_LAYOUT
     const cl::Buffer out = make_zeros<cl_uint>(device, host.size(), "layouts");
     with_device(device.info, [&] {
         cl::Kernel kernel(program, "layout");

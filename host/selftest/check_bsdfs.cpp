@@ -105,10 +105,11 @@ struct Boundary {
     bool front_only;  // a mirror: black from behind
     double near, far; // indices of refraction on the side of wi, and beyond; 0 beyond a mirror
 };
-Boundary boundary_of(const BsdfRecord &bsdf, Vec3 wi) {
-    if (bsdf.kind == BSDF_mirror)
+Boundary boundary_of(const Bsdf &bsdf, Vec3 wi) {
+    if (bsdf.is<bsdf_mirror_record>())
         return {true, 1, 0};
-    const double inside = bsdf.u.dielectric.int_ior, outside = bsdf.u.dielectric.ext_ior;
+    const auto dielectric = bsdf.as<bsdf_dielectric_record>();
+    const double inside = dielectric.int_ior.value, outside = dielectric.ext_ior.value;
     return wi.z > 0 ? Boundary{false, outside, inside} : Boundary{false, inside, outside};
 }
 
@@ -130,7 +131,7 @@ Findings check_discrete(KernelProbe &probe, unsigned id, const Material &materia
     for (double degrees : {1.0, 40.0, 60.0, 80.0, 100.0, 120.0, 150.0, 179.0}) {
         const std::string subject = fmt::format("{} at {:g} degrees", material.name, degrees);
         const Vec3 wi = direction_at(degrees);
-        const Boundary boundary = boundary_of(material.record, wi);
+        const Boundary boundary = boundary_of(material.bsdf, wi);
         const Planes drawn = probe.bsdf_sample(id, wi, numbers);
         double error = 0, reflected = 0;
         for (size_t i = 0; i < drawn.count; i++) {
@@ -164,7 +165,7 @@ Findings material_findings(KernelProbe &probe, const std::vector<Material> &mate
     Findings findings;
     unsigned seed = effort.seed;
     for (unsigned id = 0; id < materials.size(); id++) {
-        const bool discrete = is_discrete(int(materials[id].record.kind));
+        const bool discrete = is_discrete(materials[id].bsdf);
         for (double angle : effort.angles) {
             const Vec3 wi = direction_at(angle);
             const std::string subject = fmt::format("{} at {:g} degrees", materials[id].name, angle);

@@ -61,9 +61,9 @@ double error_of_counted_choice(const Device &device, const SelftestOptions &opti
     constexpr float albedo = 1e-6f;
     SceneDescription scene = furnace();
     for (Mesh &wall : scene.meshes)
-        wall.bsdf.record = examples::diffuse(0, false);
+        wall.bsdf = examples::diffuse(0, false);
     scene.meshes.push_back(parallelogram({0.7, 0, 0.05}, {0.2, 0, 0}, {0, 0.2, 0}, albedo, 0));
-    scene.meshes.back().bsdf.record.u.diffuse.use_cosine = 1; // all its paths weigh alike
+    scene.meshes.back().bsdf = examples::diffuse(albedo, true); // all its paths weigh alike
     apply_integrator(scene.strategy, find_integrator("path_mats"));
     scene.strategy[AXIS_rr] = CHOICE_rr_throughput;
     scene.strategy[AXIS_sampler] = CHOICE_sampler_sobol;

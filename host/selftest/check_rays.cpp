@@ -28,7 +28,7 @@ Findings run_rays(const Device &device, const SelftestOptions &options) {
             const bool tree = flat.features[FEATURE_tree];
             flat.features = scene_of_bsdfs({}).features;
             flat.features.list[FEATURE_tree].on = tree;
-#define OPAL_WITHOUT_BSDF(name) flat.features.list[FEATURE_bsdf_##name].on = false;
+#define OPAL_WITHOUT_BSDF(name, traits) flat.features.list[FEATURE_bsdf_##name].on = false;
             OPAL_BSDFS(OPAL_WITHOUT_BSDF)
 #undef OPAL_WITHOUT_BSDF
         }

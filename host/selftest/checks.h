@@ -31,7 +31,7 @@ Findings warp_findings(KernelProbe &probe, const std::vector<WarpCase> &cases, c
 
 struct Material {
     std::string name;
-    BsdfRecord record;
+    Bsdf bsdf;
 };
 // Written as a scene writes them. They are part of the binary, which runs where there are no test cases.
 const std::vector<Material> &selftest_materials();

@@ -7,7 +7,7 @@ namespace {
 
 Material parse_material(const std::string &name, const std::string &xml) {
     const XmlDocument document("a material of opal selftest", xml);
-    return {name, parse_bsdf(document.root(), {}).record};
+    return {name, parse_bsdf(document.root(), {})};
 }
 
 } // namespace
@@ -33,10 +33,10 @@ const std::vector<Material> &selftest_materials() {
 }
 
 FlatScene scene_of_materials(const std::vector<Material> &materials) {
-    std::vector<BsdfRecord> records;
+    std::vector<Bsdf> bsdfs;
     for (const Material &material : materials)
-        records.push_back(material.record);
-    return scene_of_bsdfs(records);
+        bsdfs.push_back(material.bsdf);
+    return scene_of_bsdfs(bsdfs);
 }
 
 } // namespace opal

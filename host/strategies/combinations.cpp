@@ -49,8 +49,8 @@ public:
             const auto *triangles = std::get_if<TriangleMesh>(&mesh.shape);
             emitters += mesh.radiance.has_value();
             light_triangles_ = light_triangles_ || (mesh.radiance && triangles && triangles->triangles.size() > 1);
-            diffuse_ = diffuse_ || mesh.bsdf.record.kind == BSDF_diffuse;
-            refracts_ = refracts_ || mesh.bsdf.record.kind == BSDF_dielectric;
+            diffuse_ = diffuse_ || mesh.bsdf.kind() == BSDF_diffuse;
+            refracts_ = refracts_ || (bsdf_traits(mesh.bsdf.kind()) & OPAL_TRANSMITS);
             mesh.shape = Parallelogram{};
         }
         many_emitters_ = emitters > 1;

@@ -26,18 +26,18 @@ TEST_CASE("In tests a warning is an error", "[program]") {
 }
 
 TEST_CASE("The records shared with the device have one size", "[program]") {
-    const cl::Program built =
-        program_of("#include \"shared/types.h\"\n#include \"bsdfs/list.h\"\n#include \"emitters/list.h\"\n"
-                   "kernel void sizes(global uint *out) {\n"
-                   "    out[0] = sizeof(BvhNode); out[1] = sizeof(TriangleBlock); out[2] = sizeof(Settings);\n"
-                   "    out[3] = sizeof(BsdfRecord); out[4] = sizeof(EmitterRecord); out[5] = sizeof(LightTriangle);\n"
-                   "    Settings s;\n"
-                   "    out[6] = (uint)((char *)&s.choices - (char *)&s);\n}\n",
-                   1);
+    const cl::Program built = program_of(
+        "#include \"shared/types.h\"\n#include \"bsdfs/list.h\"\n#include \"emitters/list.h\"\n"
+        "kernel void sizes(global uint *out) {\n"
+        "    out[0] = sizeof(BvhNode); out[1] = sizeof(TriangleBlock); out[2] = sizeof(Settings);\n"
+        "    out[3] = sizeof(bsdf_phong_record); out[4] = sizeof(EmitterRecord); out[5] = sizeof(LightTriangle);\n"
+        "    Settings s;\n"
+        "    out[6] = (uint)((char *)&s.choices - (char *)&s);\n}\n",
+        1);
     const Output<cl_uint> out(7);
     run(built, "sizes", 1, out);
     CHECK(out.read() == std::vector<cl_uint>{sizeof(BvhNode), sizeof(TriangleBlock), sizeof(Settings),
-                                             sizeof(BsdfRecord), sizeof(EmitterRecord), sizeof(LightTriangle),
+                                             sizeof(bsdf_phong_record), sizeof(EmitterRecord), sizeof(LightTriangle),
                                              offsetof(Settings, choices)});
 }
 

@@ -12,16 +12,20 @@ TEST_CASE("equal materials are one record, and --hemisphere is written into them
     SceneDescription description = scene_of({diffuse(one_triangle, 0.5f), diffuse(one_triangle, 0.25f),
                                              diffuse(one_triangle, 0.5f), diffuse(one_triangle, 0.5f, true)});
     FlatScene scene = flatten(description, 8);
-    CHECK(scene.bsdfs.size() == 3);
+    const size_t words = sizeof(bsdf_diffuse_record) / sizeof(uint);
+    const auto use_cosine = [&](size_t mesh) {
+        return record_of<bsdf_diffuse_record>(scene.bsdfs, scene.meshes[mesh].bsdf).use_cosine;
+    };
+    CHECK(scene.bsdfs.size() == 3 * words);
     CHECK((scene.meshes[0].bsdf == scene.meshes[2].bsdf && scene.meshes[0].bsdf != scene.meshes[1].bsdf));
-    CHECK(scene.bsdfs[scene.meshes[3].bsdf].u.diffuse.use_cosine == 1);
+    CHECK(use_cosine(3) == 1);
     CHECK(scene.features.axes[AXIS_hemisphere] == CHOICE_hemisphere_material);
 
     description.strategy[AXIS_hemisphere] = CHOICE_hemisphere_cosine;
     scene = flatten(description, 8);
-    CHECK(scene.bsdfs.size() == 2);
-    for (const BsdfRecord &record : scene.bsdfs)
-        CHECK(record.u.diffuse.use_cosine == 1);
+    CHECK(scene.bsdfs.size() == 2 * words);
+    for (size_t mesh = 0; mesh < scene.meshes.size(); mesh++)
+        CHECK(use_cosine(mesh) == 1);
 
     description.strategy[AXIS_hemisphere] = CHOICE_hemisphere_material;
     description.meshes.pop_back(); // now all agree
@@ -30,8 +34,7 @@ TEST_CASE("equal materials are one record, and --hemisphere is written into them
 
 TEST_CASE("features are what the scene and the strategy ask for, each with a reason", "[features]") {
     SceneDescription description = scene_of({diffuse(one_triangle), light(one_triangle, {1, 1, 1})});
-    description.meshes[0].bsdf.record = {};
-    description.meshes[0].bsdf.record.kind = BSDF_mirror;
+    description.meshes[0].bsdf = bsdf_mirror_record{};
     description.point_lights = {{{1, 1, 1}, {1, 1, 1}, {}}};
     const auto on = [](const SceneDescription &scene) {
         std::set<std::string> names;

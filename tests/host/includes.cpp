@@ -119,6 +119,7 @@ const std::vector<Room> floors = {
     {"shared", {}},
     {"bsdfs/list.h", {"shared"}},
     {"emitters/list.h", {"shared"}},
+    {"textures/list.h", {"shared"}},
     {"scene_tables.h", {"shared", "bsdfs/list.h", "emitters/list.h"}},
     {"core", {}},
     {"scene.cl", {"shared", "scene_tables.h", "core"}},
@@ -126,7 +127,9 @@ const std::vector<Room> floors = {
     {"surface.cl", {"shared", "core", "scene.cl"}},
     {"camera.cl", {"shared", "core", "scene.cl"}},
     {"film", {"shared", "core", "scene.cl", "camera.cl"}},
-    {"bsdfs", {"bsdfs/list.h", "core", "scene.cl"}},
+    {"textures", {"shared", "textures/list.h", "core", "scene.cl"}},
+    {"parameters.cl", {"shared", "core", "scene.cl", "textures"}},
+    {"bsdfs", {"shared", "bsdfs/list.h", "core", "scene.cl", "parameters.cl"}},
     {"emitters", {"shared", "emitters/list.h", "core", "scene.cl", "surface.cl"}},
     {"integrators", {"shared", "core", "scene.cl", "trace", "surface.cl", "bsdfs", "emitters"}},
     {"kernels",
@@ -145,21 +148,37 @@ Files device_files() {
     return files;
 }
 
+// The floor of a file below cl/. The headers of kinds, "bsdfs/phong.h", lie on that of their list.
 const Room *floor_of(const std::string &path) {
     const std::string folder = path.substr(0, path.find('/'));
     const auto named = [](const std::string &name) {
         const auto floor = std::find_if(floors.begin(), floors.end(), [&](const Room &f) { return f.name == name; });
         return floor == floors.end() ? nullptr : &*floor;
     };
-    return named(path) ? named(path) : named(folder);
+    const Room *list = path.ends_with(".h") ? named(folder + "/list.h") : nullptr;
+    return list ? list : named(path) ? named(path) : named(folder);
 }
 
 // What is wrong with one include of the device file `path`; empty: nothing.
 std::string floor_problem(const std::string &path, const std::string &included) {
+    if (included.ends_with("/*.cl"))
+        return floor_problem(path, room_of(included) + "/interface.cl");
     const Room *from = floor_of(path), *to = floor_of(included);
     if (!from || !to)
         return (from ? included : path) + " is not in the table of this test";
     return from == to || from->may_include.count(to->name) ? "" : "may not include " + to->name;
+}
+
+// The files that an include brings: all .cl files of a folder but `from` where it is a pattern, "bsdfs/*.cl".
+std::vector<std::string> files_of(const Files &files, const std::string &from, const Include &include) {
+    if (!include.name.ends_with("/*.cl"))
+        return {include.name};
+    const std::string folder = include.name.substr(0, include.name.size() - 5);
+    std::vector<std::string> names;
+    for (const auto &[name, text] : files)
+        if (name != from && name.ends_with(".cl") && room_of(name) == folder)
+            names.push_back(name);
+    return names;
 }
 
 // The files that a device file includes, and those that these include; itself only where it includes itself.
@@ -172,8 +191,9 @@ std::set<std::string> all_includes(const Files &files, const std::string &path) 
         if (file == files.end())
             continue;
         for (const Include &include : includes_of(file->second))
-            if (seen.insert(include.name).second)
-                waiting.push_back(include.name);
+            for (const std::string &name : files_of(files, file->first, include))
+                if (seen.insert(name).second)
+                    waiting.push_back(name);
     }
     return seen;
 }
@@ -220,7 +240,8 @@ std::vector<std::string> missing_includes(const Files &files) {
             continue;
         std::set<std::string> known = {path};
         for (const Include &include : includes_of(files.at(path)))
-            known.insert(include.name);
+            for (const std::string &name : files_of(files, path, include))
+                known.insert(name);
         const auto judge = [&](const std::set<std::string> &used, const auto &definitions) {
             for (const std::string &name : used) {
                 const auto defined = definitions.find(name);
@@ -255,7 +276,8 @@ TEST_CASE("Every device file includes only what stands below it, headers only he
     const auto problems = problems_below("cl", [](const fs::path &file, const Include &include) -> std::string {
         if (!include.quoted)
             return "has no place in code that the device reads too";
-        if (!fs::exists(fs::path(OPAL_SOURCE_DIR) / "cl" / include.name))
+        const std::string path = include.name.ends_with("/*.cl") ? room_of(include.name) : include.name;
+        if (!fs::exists(fs::path(OPAL_SOURCE_DIR) / "cl" / path))
             return "is not written from the root of cl/";
         if (file.extension() == ".h" && include.name.ends_with(".cl"))
             return "a header never includes a .cl";

@@ -96,7 +96,7 @@ TEST_CASE("Glass is closed and its normals point outwards", "[scenes]") {
     for (const auto &file : scene_files()) {
         SceneDescription scene = load_scene(file);
         for (const Mesh &mesh : scene.meshes) {
-            if (mesh.bsdf.record.kind != BSDF_dielectric)
+            if (mesh.bsdf.kind() != BSDF_dielectric)
                 continue;
             INFO(file << " " << mesh.name);
             ++found;

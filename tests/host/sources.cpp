@@ -36,6 +36,19 @@ TEST_CASE("An include is expanded in place, once, between #line directives", "[s
                                        "three\n");
 }
 
+TEST_CASE("A pattern includes the .cl files of a folder, each once", "[sources]") {
+    const Sources sources{{{"k/all.cl", "#include \"k/b.cl\"\n#include \"k/*.cl\"\nend\n"},
+                           {"k/a.cl", "#include \"k/b.cl\"\na\n"},
+                           {"k/b.cl", "b\n"},
+                           {"k/deeper/d.cl", "d\n"},
+                           {"k/h.h", "h\n"}}};
+    CHECK(sources.expand("k/all.cl", 4) == "#line 1 \"cl/k/all.cl\"\n"
+                                           "#line 1 \"cl/k/b.cl\"\nb\n"
+                                           "#line 2 \"cl/k/all.cl\"\n"
+                                           "#line 1 \"cl/k/a.cl\"\n\na\n"
+                                           "#line 3 \"cl/k/all.cl\"\nend\n");
+}
+
 TEST_CASE("What is for another width leaves an empty line", "[sources]") {
     const Sources sources{{{"a.cl", "one\n#include \"t/one_lane/b.cl\"\n#include \"t/many_lanes/c.cl\"\ntwo\n"},
                            {"t/one_lane/b.cl", "b\n"},
@@ -90,7 +103,8 @@ TEST_CASE("The program text defines width, precision, every feature and every ax
                          "#define OPAL_HAS_bsdf_diffuse 0\n"));
     CHECK_THAT(text, Catch::Contains("#define OPAL_HAS_face_list 0\n#define OPAL_HAS_tree 1\n"));
     CHECK_THAT(text, Catch::Contains("#define OPAL_HAS_wide_filter 0\n"
-                                     "#define OPAL_AXIS_integrator -1\n#define OPAL_AXIS_lighting 2\n"));
+                                     "#define OPAL_TEXTURED_bsdf_diffuse 0\n"));
+    CHECK_THAT(text, Catch::Contains("#define OPAL_AXIS_integrator -1\n#define OPAL_AXIS_lighting 2\n"));
     CHECK_THAT(text, Catch::Contains("#define OPAL_AXIS_sampler -1\n"));
     CHECK_THAT(text, Catch::Contains("\n#line 1 \"cl/kernels/k.cl\"\nkernel void k() {}\n"));
     CHECK(program_text(features, options, sources) == text);

@@ -34,7 +34,7 @@ std::vector<Material> bsdf_cases(const std::filesystem::path &folder) {
         const XmlDocument document(file);
         if (document.root().tag() != "bsdf")
             document.root().fail("a case of this folder is a <bsdf>");
-        cases.push_back({file.stem().string(), parse_bsdf(document.root(), {folder}).record});
+        cases.push_back({file.stem().string(), parse_bsdf(document.root(), {folder})});
     }
     return cases;
 }

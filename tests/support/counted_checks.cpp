@@ -52,9 +52,7 @@ SceneDescription lamps(const std::vector<double> &others) {
 
 // A pane seen at right angles: reflected paths meet a light, refracted ones leave the scene.
 SceneDescription reflection(float index) {
-    BsdfRecord glass = examples::dielectric();
-    glass.u.dielectric = {index, 1};
-    SceneDescription scene = scene_of({made_of(quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), glass),
+    SceneDescription scene = scene_of({made_of(quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), examples::dielectric(index)),
                                        light(Parallelogram{{-1, 2, -1}, {2, 0, 0}, {0, 0, 2}}, {1, 1, 1})});
     scene.camera = camera({0, 1, 0}, {0, 0, 0}, 1, 1, 1e-3);
     scene.strategy.max_depth = 2;
@@ -113,7 +111,7 @@ Findings check_counted(const Sources &sources, unsigned) {
     // Without any choice every path sums the series 1 + a + a^2 + ...
     for (double albedo : {0.9, 0.99, 0.999}) {
         SceneDescription scene = furnace(albedo, 1);
-        scene.meshes[0].bsdf.record.u.diffuse.use_cosine = 1;
+        scene.meshes[0].bsdf = examples::diffuse(albedo, true);
         RenderSetup setup;
         setup.sources = &sources;
         scene.camera.width = scene.camera.height = 2;
@@ -157,32 +155,27 @@ Findings check_choices(const Sources &sources, unsigned) {
     for (int lanes : tested_lanes()) {
         BuildOptions build;
         build.lanes = lanes;
-        const auto probe_of = [&](const BsdfRecord &record) {
-            return KernelProbe(device(), scene_of_bsdfs({record}), build, sources);
+        const auto probe_of = [&](const Bsdf &bsdf) {
+            return KernelProbe(device(), scene_of_bsdfs({bsdf}), build, sources);
         };
         const auto density = [&](KernelProbe &probe, Vec3 wo) {
             return double(probe.bsdf_eval(0, wi, std::vector{wo}).at(EVAL_PDF, 0));
         };
-        const auto coated = [](float ks) {
-            BsdfRecord record = examples::microfacet(0.2, 1 - ks);
-            record.u.microfacet.alpha = 0.001f;
-            record.u.microfacet.ks = ks;
-            return record;
-        };
+        const auto coated = [](float kd) { return examples::microfacet(0.001, kd); };
         KernelProbe half = probe_of(coated(0.5f)); // half of each part: its density gives that of the coat alone
         const double base = wi.z / pi, coat = 2 * density(half, mirrored) - base;
         for (float share : {1e-6f, 3e-4f, 0.3f}) {
-            BsdfRecord phong = examples::phong(20);
-            phong.u.phong.pd = share;
-            phong.u.phong.n = 1e4f; // so narrow that the lobe is black towards the viewer
+            auto phong = examples::phong(1e4).as<bsdf_phong_record>(); // so narrow that it is black towards the viewer
+            phong.pd = share;
             KernelProbe probe = probe_of(phong);
             judge(fmt::format("Phong's diffuse part at {} lanes", lanes), probe, density(probe, wi) * pi / wi.z,
                   double(share));
             if (share > 0.1f)
                 continue; // a float density cannot tell so many numbers apart
-            KernelProbe coated_probe = probe_of(coated(share));
+            const float kd = 1 - share;
+            KernelProbe coated_probe = probe_of(coated(kd));
             judge(fmt::format("the microfacets' coat at {} lanes", lanes), coated_probe,
-                  (density(coated_probe, mirrored) - base) / (coat - base), double(share));
+                  (density(coated_probe, mirrored) - base) / (coat - base), 1 - double(kd));
         }
     }
     return findings;

@@ -49,7 +49,7 @@ SceneDescription half_lit(double edge) {
     // -1.
     const double x = 1 - 2 * edge / width;
     SceneDescription scene = scene_of({light(Parallelogram{{x, -90, 1}, {0, 180, 0}, {50, 0, 0}}, {1, 1, 1})});
-    scene.meshes[0].bsdf.record = diffuse(0);
+    scene.meshes[0].bsdf = diffuse(0);
     scene.camera.width = width;
     scene.camera.height = height;
     scene.camera.fov = 90;

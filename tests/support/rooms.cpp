@@ -51,7 +51,7 @@ SceneDescription room(std::vector<Mesh> meshes, int width, int height, bool blac
     meshes.push_back(light(Parallelogram{{-0.98, -0.2, -0.3}, {0, 0.7, 0}, {0, 0, 0.8}}, {2, 4, 7}));
     for (Mesh &mesh : meshes)
         if (black_lights && mesh.radiance)
-            mesh.bsdf.record = diffuse(0);
+            mesh.bsdf = diffuse(0);
     SceneDescription scene = scene_of(std::move(meshes));
     scene.camera = camera({0.1, 0.05, -0.97}, {0, -0.1, 1}, width, height, 85);
     return scene;

@@ -1,91 +1,61 @@
-// Parsers of BSDFs. Their manuals are in cl/bsdfs/NAME.cl.
+// The parser of BSDFs: their parameters are those of cl/bsdfs/NAME.h, by their names in the XML.
 #include "read/nori/parsers.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <bit>
 
 namespace opal {
 
 namespace {
 
-// A reflectance: not negative. Values above 1 are allowed.
-Color reflectance(Properties &properties, const std::string &name) {
-    Color color = properties.color(name).value_or(Color{0.5, 0.5, 0.5});
-    properties.check(*std::min_element(color.begin(), color.end()) >= 0, name, "must not be negative");
-    return color;
-}
-
-float ior(Properties &properties, const std::string &name, double otherwise) {
-    double value = properties.number(name).value_or(otherwise);
-    properties.check(value > 0, name, "must be a positive index of refraction");
-    return static_cast<float>(value);
-}
-
-void store(const Color &color, float (&to)[3]) { std::copy(color.begin(), color.end(), to); }
-
-void parse_diffuse(Properties &properties, BsdfRecord &record) {
-    store(reflectance(properties, "albedo"), record.u.diffuse.albedo);
-    record.u.diffuse.use_cosine = properties.boolean("use_cosine").value_or(false);
-}
-
-void parse_mirror(Properties &, BsdfRecord &) {}
-
-void parse_dielectric(Properties &properties, BsdfRecord &record) {
-    record.u.dielectric.int_ior = ior(properties, "intIOR", 1.5046);
-    record.u.dielectric.ext_ior = ior(properties, "extIOR", 1.000277);
-}
-
-void parse_microfacet(Properties &properties, BsdfRecord &record) {
-    MicrofacetParams &microfacet = record.u.microfacet;
-    Color kd = reflectance(properties, "kd");
-    double largest = *std::max_element(kd.begin(), kd.end());
-    properties.check(largest <= 1, "kd", "must not exceed 1: the specular part is 1 - max(kd)");
-    double alpha = properties.number("alpha").value_or(0.1);
-    properties.check(alpha > 0, "alpha", "must be a positive roughness");
-    store(kd, microfacet.kd);
-    microfacet.alpha = static_cast<float>(alpha);
-    microfacet.ks = static_cast<float>(1 - largest);
-    microfacet.int_ior = ior(properties, "intIOR", 1.5046);
-    microfacet.ext_ior = ior(properties, "extIOR", 1.000277);
-}
-
-void parse_phong(Properties &properties, BsdfRecord &record) {
-    PhongParams &phong = record.u.phong;
-    store(reflectance(properties, "kd"), phong.kd);
-    store(reflectance(properties, "ks"), phong.ks);
-    double pd = properties.number("pd").value_or(0.5), n = properties.number("n").value_or(20);
-    properties.check(pd >= 0 && pd <= 1, "pd", "must be a probability, 0 to 1");
-    properties.check(n >= 0, "n", "must be an exponent, 0 or more");
-    phong.pd = static_cast<float>(pd);
-    phong.n = static_cast<float>(n);
-}
-
 struct BsdfType {
     std::string name;
-    int kind;
-    void (*parse)(Properties &, BsdfRecord &);
+    std::vector<uint> words; // its record with all defaults
 };
 
-#define OPAL_BSDF_TYPE(name) {#name, BSDF_##name, parse_##name},
+#define OPAL_BSDF_TYPE(name, traits) {#name, words_of(bsdf_##name##_record{})},
 const std::vector<BsdfType> bsdf_types = {OPAL_BSDFS(OPAL_BSDF_TYPE)};
+
+// Numbers are checked as the device will see them, in single precision.
+uint checked_word(const Properties &properties, const Parameter &parameter, double value) {
+    const float number = static_cast<float>(value);
+    properties.check(parameter.range.holds(number), parameter.xml_name,
+                     fmt::format("must be {}: {}", text_of(parameter), parameter.meaning));
+    return std::bit_cast<uint>(number);
+}
+
+// Sets the words of a parameter that the object has.
+void read_parameter(Properties &properties, const Parameter &parameter, std::span<uint> words) {
+    switch (parameter.type) {
+    case ParameterType::COLOR:
+        if (const auto color = properties.color(parameter.xml_name))
+            for (size_t i = 0; i < 3; i++)
+                words[parameter.word + i] = checked_word(properties, parameter, (*color)[i]);
+        break;
+    case ParameterType::NUMBER:
+        if (const auto number = properties.number(parameter.xml_name))
+            words[parameter.word] = checked_word(properties, parameter, *number);
+        break;
+    case ParameterType::FLAG:
+        if (const auto flag = properties.boolean(parameter.xml_name))
+            words[parameter.word] = *flag;
+        break;
+    }
+}
 
 } // namespace
 
 Bsdf parse_bsdf(const XmlNode &node, const ParseContext &context) {
-    const BsdfType &type = row_of_type(node, bsdf_types);
     Properties properties(node, context);
     Bsdf bsdf;
     bsdf.place = node.place();
-    bsdf.record.kind = static_cast<uint>(type.kind);
-    type.parse(properties, bsdf.record);
+    bsdf.words = row_of_type(node, bsdf_types).words;
+    for (const Parameter &parameter : bsdf_parameters(bsdf.kind()))
+        read_parameter(properties, parameter, bsdf.words);
     properties.ignore("use_cosine"); // exporters write it for every material
     properties.finish();
-    return bsdf;
-}
-
-Bsdf default_bsdf() {
-    Bsdf bsdf;
-    bsdf.record.kind = BSDF_diffuse;
-    store({0.5, 0.5, 0.5}, bsdf.record.u.diffuse.albedo);
     return bsdf;
 }
 

@@ -7,7 +7,6 @@
 namespace opal {
 
 Bsdf parse_bsdf(const XmlNode &node, const ParseContext &context);
-Bsdf default_bsdf(); // for a mesh without one: diffuse, albedo 0.5
 
 Color parse_area_emitter(const XmlNode &node, const ParseContext &context); // a child of a mesh; returns its radiance
 PointLight parse_scene_emitter(const XmlNode &node, const ParseContext &context); // a child of the scene

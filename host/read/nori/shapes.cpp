@@ -58,8 +58,8 @@ Mesh parse_mesh(const XmlNode &node, const ParseContext &context) {
     mesh.place = node.place();
     mesh.name = properties.string("name").value_or("");
     Transform to_world = properties.transform("toWorld").value_or(Transform());
-    auto bsdf = properties.child("bsdf");
-    mesh.bsdf = bsdf ? parse_bsdf(*bsdf, context) : default_bsdf();
+    if (auto bsdf = properties.child("bsdf"))
+        mesh.bsdf = parse_bsdf(*bsdf, context);
     if (auto emitter = properties.child("emitter"))
         mesh.radiance = parse_area_emitter(*emitter, context);
     type.parse(properties, to_world, mesh);

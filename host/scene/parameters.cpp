@@ -1,0 +1,66 @@
+#include "scene/parameters.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstddef>
+
+namespace opal {
+
+namespace {
+
+// The place of a parameter's texture, given that of its first word and its type.
+size_t texture_word(ParameterType type, size_t word) {
+    switch (type) {
+    case ParameterType::COLOR:
+        return word + offsetof(ColorParameter, texture) / sizeof(uint);
+    case ParameterType::NUMBER:
+        return word + offsetof(NumberParameter, texture) / sizeof(uint);
+    default:
+        return 0;
+    }
+}
+
+} // namespace
+
+std::span<const Parameter> bsdf_parameters(uint kind) {
+#define OPAL_WORD(name) (offsetof(Record, name) / sizeof(uint))
+#define OPAL_PARAMETER_ROW(type, name, xml, initial, range, meaning)                                                   \
+    {ParameterType::type,                                                                                              \
+     #name,                                                                                                            \
+     xml,                                                                                                              \
+     initial,                                                                                                          \
+     range,                                                                                                            \
+     meaning,                                                                                                          \
+     OPAL_WORD(name),                                                                                                  \
+     texture_word(ParameterType::type, OPAL_WORD(name))},
+#define OPAL_BSDF_PARAMETERS(name, traits)                                                                             \
+    [] {                                                                                                               \
+        using Record [[maybe_unused]] = bsdf_##name##_record;                                                          \
+        return std::vector<Parameter>{OPAL_BSDF_##name(OPAL_PARAMETER_ROW)};                                           \
+    }(),
+    static const std::vector<Parameter> tables[] = {OPAL_BSDFS(OPAL_BSDF_PARAMETERS)};
+    return tables[kind];
+}
+
+std::string text_of(const Parameter &parameter) {
+    const ValueRange &range = parameter.range;
+    if (parameter.type == ParameterType::FLAG)
+        return "true or false";
+    if (!std::isinf(range.most))
+        return fmt::format("{:g} to {:g}", range.least, range.most);
+    return range.without_least ? fmt::format("above {:g}", range.least) : fmt::format("{:g} or more", range.least);
+}
+
+std::string text_of_initial(const Parameter &parameter) {
+    if (parameter.type == ParameterType::FLAG)
+        return parameter.initial != 0 ? "true" : "false";
+    return fmt::format("{:g}", parameter.initial);
+}
+
+const char *xml_tag(ParameterType type) {
+    static const char *const tags[] = {"color", "float", "boolean"};
+    return tags[static_cast<size_t>(type)];
+}
+
+} // namespace opal
