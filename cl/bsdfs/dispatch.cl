@@ -4,11 +4,37 @@
 #include "bsdfs/list.h"
 #include "core/lanes.cl"
 #include "scene.cl"
+#include "surface.cl"
 
 #define COUNT_BSDF(name, traits) +OPAL_HAS_bsdf_##name
-enum { BSDF_KINDS = 0 OPAL_BSDFS(COUNT_BSDF) }; // of this kernel
+enum { // of this kernel
+    BSDF_KINDS = 0 OPAL_BSDFS(COUNT_BSDF),
+    NESTING_BSDF_KINDS = 0 OPAL_NESTING_BSDFS(COUNT_BSDF)
+};
 
 static uints bsdf_kind(const Scene *scene, uints at) { return GATHER_WORD(uints, scene->bsdfs, at); }
+
+// Sets the surface's BSDF, frame and wi to those of the BSDF that nested ones lead to. The functions below are asked
+// after that.
+static void bsdf_open(const Scene *scene, Surface *s, mask active) {
+    if (NESTING_BSDF_KINDS == 0) return;
+    BsdfOpening o = {s->bsdf, s->wi, s->frame};
+    mask opened;
+    do {
+        uints kind = bsdf_kind(scene, o.at);
+        opened = NO_LANES;
+#define OPEN(name, refused) \
+        if (OPAL_HAS_bsdf_##name) { \
+            mask m = active & to_mask(kind == BSDF_##name); \
+            if (ANY(m)) o = bsdf_opening_pick(m, name##_open(name##_at(scene, o.at, v2_of(s->u, s->v), m), o), o); \
+            opened = opened | m; \
+        }
+        OPAL_NESTING_BSDFS(OPEN)
+    } while (ANY(opened));
+    s->bsdf = o.at;
+    s->wi = o.wi;
+    s->frame = o.frame;
+}
 
 // What the BSDFs of a surface answer, one a lane.
 typedef struct {
@@ -17,44 +43,35 @@ typedef struct {
     BsdfSample sample; // the next direction
 } BsdfResponse;
 
-// Evaluates the BSDFs whose records begin at word `at` in direction wo, in the lanes of `evaluated`, and draws a
-// direction by u and lobe, independent numbers in [0, 1), in those of `sampled`. f, pdf and the weight are 0 in other
-// lanes. Both in one call, because each kind's code is compiled, and each material read, once a call.
-static BsdfResponse bsdf_respond(const Scene *scene, uints at, v2 uv, v3 wi, v3 wo, mask evaluated, v2 u, real lobe,
-                                 mask sampled) {
+// Evaluates the surface's BSDFs in direction wo, in the lanes of `evaluated`, and draws a direction by u and lobe,
+// independent numbers in [0, 1), in those of `sampled`. f, pdf and the weight are 0 in other lanes. Both in one call,
+// because each kind's code is compiled, and each material read, once a call.
+static BsdfResponse bsdf_respond(const Scene *scene, Surface s, v3 wo, mask evaluated, v2 u, real lobe, mask sampled) {
     BsdfResponse r;
     r.f = v3_all((real)(0));
     r.pdf = 0;
-    r.sample = bsdf_sample_of(wi, v3_all((real)(0)), (real)(0), (real)(1), NO_LANES);
-    uints kind = bsdf_kind(scene, at);
+    r.sample = bsdf_sample_of(s.wi, v3_all((real)(0)), (real)(0), (real)(1), NO_LANES);
+    uints kind = bsdf_kind(scene, s.bsdf);
 #define RESPOND(name, traits) \
     if (OPAL_HAS_bsdf_##name) { \
-        mask m = BSDF_KINDS == 1 ? ALL_LANES : to_mask(kind == BSDF_##name); \
-        mask m_evaluated = evaluated & m, m_sampled = sampled & m; \
+        mask same = BSDF_KINDS == 1 ? ALL_LANES : to_mask(kind == BSDF_##name); \
+        mask m_evaluated = evaluated & same, m_sampled = sampled & same; \
         if (ANY(m_evaluated | m_sampled)) { \
-            name##_bsdf b = name##_at(scene, at, uv); \
+            name##_bsdf b = name##_at(scene, s.bsdf, v2_of(s.u, s.v), m_evaluated | m_sampled); \
             if (((traits) & OPAL_SMOOTH) && ANY(m_evaluated)) { \
-                r.f = v3_pick(m_evaluated, name##_eval(b, wi, wo), r.f); \
-                r.pdf = m_evaluated ? name##_pdf(b, wi, wo) : r.pdf; \
+                r.f = v3_pick(m_evaluated, name##_eval(b, s.wi, wo), r.f); \
+                r.pdf = m_evaluated ? name##_pdf(b, s.wi, wo) : r.pdf; \
             } \
-            if (ANY(m_sampled)) r.sample = bsdf_sample_pick(m_sampled, name##_sample(b, wi, u, lobe), r.sample); \
+            if (ANY(m_sampled)) r.sample = bsdf_sample_pick(m_sampled, name##_sample(b, s.wi, u, lobe), r.sample); \
         } \
     }
     OPAL_BSDFS(RESPOND)
     return r;
 }
 
-// The evaluation alone, and in *pdf the density.
-static v3 bsdf_eval(const Scene *scene, uints at, v2 uv, v3 wi, v3 wo, mask active, real *pdf) {
-    v2 none = v2_of((real)(0), (real)(0));
-    BsdfResponse r = bsdf_respond(scene, at, uv, wi, wo, active, none, (real)(0), NO_LANES);
-    *pdf = r.pdf;
-    return r.f;
-}
-
 // The sample alone.
-static BsdfSample bsdf_sample(const Scene *scene, uints at, v2 uv, v3 wi, v2 u, real lobe, mask active) {
-    return bsdf_respond(scene, at, uv, wi, wi, NO_LANES, u, lobe, active).sample;
+static BsdfSample bsdf_sample(const Scene *scene, Surface s, v2 u, real lobe, mask active) {
+    return bsdf_respond(scene, s, s.wi, NO_LANES, u, lobe, active).sample;
 }
 
 // The lanes whose BSDF is discrete and nothing else: light sampling cannot serve it.

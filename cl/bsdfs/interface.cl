@@ -5,20 +5,24 @@
 //   v3   NAME_eval(b, wi, wo)                   f(wi, wo) without the cosine, 1/sr; 0 for discrete BSDFs
 //   real NAME_pdf(b, wi, wo)                    density of NAME_sample, solid angle measure, 1/sr; 0 for discrete BSDFs
 //   BsdfSample NAME_sample(b, wi, u, lobe)      draws wo by random numbers u and lobe in [0, 1)
+// A BSDF that leads to others (OPAL_NESTING_BSDFS) offers this alone:
+//   BsdfOpening NAME_open(b, o)                 the BSDF to ask in its place, and the directions to ask it with
 // b is a NAME_bsdf, the lanes' parameters; NAME_at reads them. Both are made of bsdfs/NAME.h below.
 // Functions compute all lanes; their callers pick those that are meant.
 #include "bsdfs/list.h"
 #include "core/lanes.cl"
+#include "core/math.cl"
 #include "parameters.cl"
 #include "scene.cl"
 
-// NAME_bsdf, and NAME_at: the parameters at `uv` of the BSDFs whose records begin at word `at`.
+// NAME_bsdf, and NAME_at: the parameters at `uv` of the BSDFs whose records begin at word `at`. Lanes that are not active
+// may have records of other kinds: the host pads the table, so that no read passes its end.
 #define BSDF_READER(name, traits) \
     typedef struct { \
         uints at; \
         OPAL_BSDF_##name(LANES_MEMBER) \
     } name##_bsdf; \
-    static name##_bsdf name##_at(const Scene *scene, uints at, v2 uv) { \
+    static name##_bsdf name##_at(const Scene *scene, uints at, v2 uv, mask active) { \
         enum { OPAL_BSDF_##name(PARAMETER_PLACE) textured = OPAL_TEXTURED_bsdf_##name }; \
         global const bsdf_##name##_record *record = (global const bsdf_##name##_record *)scene->bsdfs; \
         name##_bsdf lanes; \
@@ -26,7 +30,22 @@
         OPAL_BSDF_##name(READ_PARAMETER) \
         return lanes; \
     }
-OPAL_BSDFS(BSDF_READER)
+OPAL_ALL_BSDFS(BSDF_READER)
+
+// A BSDF and how a surface asks it.
+typedef struct {
+    uints at;    // first word of its record
+    v3 wi;       // towards the viewer, in `frame`
+    Frame frame; // around the shading normal
+} BsdfOpening;
+
+static BsdfOpening bsdf_opening_pick(mask m, BsdfOpening yes, BsdfOpening no) {
+    BsdfOpening o = {uints_pick(m, yes.at, no.at),
+                     v3_pick(m, yes.wi, no.wi),
+                     {v3_pick(m, yes.frame.s, no.frame.s), v3_pick(m, yes.frame.t, no.frame.t),
+                      v3_pick(m, yes.frame.n, no.frame.n)}};
+    return o;
+}
 
 typedef struct {
     v3 wo;           // unit

@@ -7,6 +7,7 @@
 #include "bsdfs/microfacet.h"
 #include "bsdfs/mirror.h"
 #include "bsdfs/phong.h"
+#include "bsdfs/twosided.h"
 #include "shared/glue.h"
 #include "shared/parameters.h"
 
@@ -25,8 +26,13 @@ enum {
     BSDF(microfacet, OPAL_SMOOTH) \
     BSDF(phong, OPAL_SMOOTH)
 
+// BSDFs that only lead to others, which are their parameters of type BSDF: BSDF(name, traits that these must not have)
+#define OPAL_NESTING_BSDFS(BSDF) BSDF(twosided, OPAL_TRANSMITS)
+
+#define OPAL_ALL_BSDFS(BSDF) OPAL_BSDFS(BSDF) OPAL_NESTING_BSDFS(BSDF)
+
 #define OPAL_BSDF_ENUM(name, traits) BSDF_##name,
-enum { OPAL_BSDFS(OPAL_BSDF_ENUM) BSDF_COUNT };
+enum { OPAL_ALL_BSDFS(OPAL_BSDF_ENUM) BSDF_COUNT };
 
 #ifdef __cplusplus
 namespace opal {
@@ -39,7 +45,7 @@ namespace opal {
         uint kind OPAL_INITIALLY(BSDF_##name); \
         OPAL_BSDF_##name(OPAL_MEMBER) \
     } bsdf_##name##_record;
-OPAL_BSDFS(OPAL_BSDF_RECORD)
+OPAL_ALL_BSDFS(OPAL_BSDF_RECORD)
 
 #ifdef __cplusplus
 }

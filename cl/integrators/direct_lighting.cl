@@ -23,6 +23,7 @@ static mask direct_lighting_step(const Scene *scene, Path *path, Hit hit, mask a
     active = on_surface & to_mask(path->depth == 1u) & to_mask(s.emitter == OPAL_NONE) &
              to_mask(path->depth < scene->settings->max_depth);
     if (!ANY(active)) return active;
+    bsdf_open(scene, &s, active);
     mask discrete = bsdf_is_discrete(scene, s.bsdf);
     mask by_bsdf = active, by_light = active & !discrete;
     if (CHOSEN(scene, lighting, emitter)) by_bsdf = active & discrete;

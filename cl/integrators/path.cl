@@ -20,6 +20,7 @@ static mask path_step(const Scene *scene, Path *path, Hit hit, mask active) {
     if (!ANY(active)) return active;
 
     // Light that is sampled
+    bsdf_open(scene, &s, active);
     mask by_light = CHOSEN(scene, lighting, bsdf) ? NO_LANES : active & !bsdf_is_discrete(scene, s.bsdf);
     DirectLight light = sample_direct_light(scene, path, s, by_light);
 

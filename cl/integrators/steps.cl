@@ -100,16 +100,15 @@ static DirectLight no_direct_light() {
     return none;
 }
 
-// Completes a light sample: f is the BSDF's value for its direction wo, bsdf_pdf the density with which the BSDF draws
-// it.
-static DirectLight direct_light(const Scene *scene, const Path *path, Surface s, LightSample light, v3 wo, v3 f,
-                                real bsdf_pdf) {
+// Completes a light sample of direction wo by what the BSDF answers.
+static DirectLight direct_light(const Scene *scene, const Path *path, Surface s, LightSample light, v3 wo,
+                                BsdfResponse bsdf) {
     real inverse_pdf = light.inverse_pdf;
     if (CHOSEN(scene, lighting, mis)) {
-        real weight = mis_weight(scene, light.discrete ? (real)(0) : bsdf_pdf * inverse_pdf);
+        real weight = mis_weight(scene, light.discrete ? (real)(0) : bsdf.pdf * inverse_pdf);
         inverse_pdf = weight * inverse_pdf;
     }
-    v3 light_in = v3_scale(v3_mul(f, light.radiance), fabs(wo.z) * inverse_pdf);
+    v3 light_in = v3_scale(v3_mul(bsdf.f, light.radiance), fabs(wo.z) * inverse_pdf);
     // Light that is not finite must reach the film, where it is counted.
     mask active = light.active & ((v3_largest(light_in) > 0) | !is_finite(light_in));
     DirectLight direct = {v3_mul(path->throughput, light_in), shadow_ray(s, light), active};
@@ -123,9 +122,8 @@ static DirectLight sample_direct_light(const Scene *scene, const Path *path, Sur
     v3 wo;
     LightSample light = sample_light(scene, path, s, active, &wo);
     if (!ANY(light.active)) return no_direct_light();
-    real bsdf_pdf;
-    v3 f = bsdf_eval(scene, s.bsdf, v2_of(s.u, s.v), s.wi, wo, light.active, &bsdf_pdf);
-    return direct_light(scene, path, s, light, wo, f, bsdf_pdf);
+    v2 none = v2_of((real)(0), (real)(0));
+    return direct_light(scene, path, s, light, wo, bsdf_respond(scene, s, wo, light.active, none, (real)(0), NO_LANES));
 }
 
 // The radiance of direct light where nothing blocks its shadow ray, else 0.
@@ -148,8 +146,7 @@ static v3 visible_light(const Scene *scene, DirectLight light) {
 // Draws the path's next segment by the BSDF. Returns the active lanes whose path still carries something.
 static mask scatter(const Scene *scene, Path *path, Surface s, mask active) {
     v2 lobe = path_draw(scene, path, DIM_LOBE);
-    BsdfSample sample =
-        bsdf_sample(scene, s.bsdf, v2_of(s.u, s.v), s.wi, path_draw(scene, path, DIM_BSDF), lobe.x, active);
+    BsdfSample sample = bsdf_sample(scene, s, path_draw(scene, path, DIM_BSDF), lobe.x, active);
     mask broken = active & !is_finite(sample.weight);
     if (ANY(broken)) { // the path ends, and the film counts it
         path->radiance = v3_pick(broken, sample.weight, path->radiance);

@@ -17,6 +17,7 @@ static mask whitted_step(const Scene *scene, Path *path, Hit hit, mask active) {
     v3 met = light_met(scene, path, s, on_surface, active);
     path->radiance = v3_add(path->radiance, v3_mul(path->throughput, met));
     active = on_surface & to_mask(path->depth < scene->settings->max_depth);
+    bsdf_open(scene, &s, active);
     mask specular = active & bsdf_is_discrete(scene, s.bsdf);
     DirectLight light = sample_direct_light(scene, path, s, active & !specular);
     path->radiance = v3_add(path->radiance, visible_light(scene, light));

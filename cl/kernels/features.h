@@ -12,7 +12,7 @@
 
 // Define OPAL_FEATURE_ROW(name, shown) and expand this; `shown` is what `opal inspect` calls the feature.
 #define OPAL_FEATURES \
-    OPAL_BSDFS(OPAL_BSDF_FEATURE) \
+    OPAL_ALL_BSDFS(OPAL_BSDF_FEATURE) \
     OPAL_EMITTERS(OPAL_EMITTER_FEATURE) \
     /* several emitters, one of which is chosen; else emitter 0 is meant */ \
     OPAL_FEATURE_ROW(many_emitters, "many_emitters") \

@@ -7,6 +7,7 @@
 #include "bsdfs/dispatch.cl"
 #include "bsdfs/interface.cl"
 #include "core/lanes.cl"
+#include "core/math.cl"
 #include "core/rng.cl"
 #include "core/warp.cl"
 #include "emitters/choice.cl"
@@ -70,17 +71,32 @@ kernel void warp_pdf(int which, float parameter, global const float *points, glo
     put(out, 0, stride, base, pdf);
 }
 
-// The BSDF of a mesh, at uv = 0.
+// A surface of a mesh in the plane z = 0, seen from wi, at uv = 0.
+static Surface flat_surface(const Scene *scene, uint mesh, float wi_x, float wi_y, float wi_z) {
+    real zero = 0, one = 1;
+    Surface s;
+    s.p = v3_all(zero);
+    s.t = s.u = s.v = s.ray_offset = zero;
+    s.triangle = (uints)(0);
+    s.frame.s = v3_of(one, zero, zero);
+    s.frame.t = v3_of(zero, one, zero);
+    s.frame.n = s.normal = v3_of(zero, zero, one);
+    s.wi = v3_of((real)(wi_x), (real)(wi_y), (real)(wi_z));
+    s.bsdf = (uints)(scene->meshes[mesh].bsdf);
+    s.emitter = (uints)(OPAL_NONE);
+    bsdf_open(scene, &s, ALL_LANES);
+    return s;
+}
+
 kernel void bsdf_draw(SCENE_PARAMETERS, uint mesh, float wi_x, float wi_y, float wi_z, global const float *given,
                       global float *out, uint first, uint stride) {
     uint base = base_of_item(first);
     if (base >= stride) return;
     Scene scene = SCENE_OF_PARAMETERS;
-    v3 wi = v3_of((real)(wi_x), (real)(wi_y), (real)(wi_z));
+    Surface surface = flat_surface(&scene, mesh, wi_x, wi_y, wi_z);
     v2 u = get_v2(given, 0, stride, base);
-    v2 uv = v2_of((real)(0), (real)(0));
-    BsdfSample s = bsdf_sample(&scene, (uints)(meshes[mesh].bsdf), uv, wi, u, get(given, 2, stride, base), ALL_LANES);
-    put_v3(out, BSDF_WO_X, stride, base, s.wo);
+    BsdfSample s = bsdf_sample(&scene, surface, u, get(given, 2, stride, base), ALL_LANES);
+    put_v3(out, BSDF_WO_X, stride, base, to_world(surface.frame, s.wo));
     put_v3(out, BSDF_WEIGHT_R, stride, base, s.weight);
     put(out, BSDF_PDF, stride, base, s.pdf);
     put(out, BSDF_ETA, stride, base, s.eta);
@@ -92,13 +108,11 @@ kernel void bsdf_value(SCENE_PARAMETERS, uint mesh, float wi_x, float wi_y, floa
     uint base = base_of_item(first);
     if (base >= stride) return;
     Scene scene = SCENE_OF_PARAMETERS;
-    v3 wi = v3_of((real)(wi_x), (real)(wi_y), (real)(wi_z));
-    real pdf;
-    v2 uv = v2_of((real)(0), (real)(0));
-    v3 wo = get_v3(points, WARP_X, stride, base);
-    v3 f = bsdf_eval(&scene, (uints)(meshes[mesh].bsdf), uv, wi, wo, ALL_LANES, &pdf);
-    put_v3(out, EVAL_R, stride, base, f);
-    put(out, EVAL_PDF, stride, base, pdf);
+    Surface surface = flat_surface(&scene, mesh, wi_x, wi_y, wi_z);
+    v3 wo = to_local(surface.frame, get_v3(points, WARP_X, stride, base));
+    BsdfResponse r = bsdf_respond(&scene, surface, wo, ALL_LANES, v2_of((real)(0), (real)(0)), (real)(0), NO_LANES);
+    put_v3(out, EVAL_R, stride, base, r.f);
+    put(out, EVAL_PDF, stride, base, r.pdf);
 }
 
 // Random words whose upper 24 bits are these numbers (unit_real).

@@ -19,7 +19,7 @@
     MEMBER(LightTriangle, inverse_pdf)
 
 // Says the layout of all records by the statements OPAL_SIZE(T) and OPAL_OFFSET(T, member), which either side defines.
-#define OPAL_LAYOUT OPAL_RECORDS(OPAL_SIZE) OPAL_MEMBERS(OPAL_OFFSET) OPAL_BSDFS(OPAL_BSDF_LAYOUT)
+#define OPAL_LAYOUT OPAL_RECORDS(OPAL_SIZE) OPAL_MEMBERS(OPAL_OFFSET) OPAL_ALL_BSDFS(OPAL_BSDF_LAYOUT)
 #define OPAL_BSDF_LAYOUT(name, traits) \
     { \
         typedef bsdf_##name##_record Record; \

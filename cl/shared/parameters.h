@@ -6,7 +6,8 @@
 //   COLOR    linear RGB; the range holds for each channel
 //   NUMBER   a number
 //   FLAG     true or false
-// A range is AT_LEAST(x), ABOVE(x), BETWEEN(x, y), or ANY for flags.
+//   BSDF     another BSDF, by the first word of its record
+// A range is AT_LEAST(x), ABOVE(x), BETWEEN(x, y), or ANY.
 // From the list come the record that host and device share (below), the lanes' struct and its reader
 // (parameters.cl), and on the host the reading of XML, the options of `opal warp`, and the manual
 // (host/scene/parameters.h).
@@ -53,5 +54,6 @@ typedef struct NumberParameter {
 #define OPAL_MEMBER_COLOR ColorParameter
 #define OPAL_MEMBER_NUMBER NumberParameter
 #define OPAL_MEMBER_FLAG uint
+#define OPAL_MEMBER_BSDF uint
 
 #endif

@@ -6,10 +6,11 @@
 #include "textures/*.cl"
 #include "textures/list.h"
 
-// The factor that the textures `at` give a parameter at `uv`: 1 in lanes that have no texture (OPAL_UNTEXTURED).
-static v3 texture_color(const Scene *scene, uints at, v2 uv) {
+// The factor that the textures `at` give a parameter at `uv`: 1 in lanes that are not active or have no
+// texture (OPAL_UNTEXTURED).
+static v3 texture_color(const Scene *scene, uints at, v2 uv, mask active) {
     v3 factor = v3_all((real)(1));
-    mask textured = to_mask(at != OPAL_UNTEXTURED);
+    mask textured = active & to_mask(at != OPAL_UNTEXTURED);
     at = uints_pick(textured, at, (uints)(0));
     uints kind = GATHER_WORD(uints, scene->textures, at);
 #define TEXTURE_COLOR(name) { \

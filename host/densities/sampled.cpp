@@ -62,7 +62,7 @@ double lobe_width(KernelProbe &probe, unsigned id, Vec3 wi) {
 
 const char *warp_name(int warp) { return warps[warp].name; }
 
-bool is_discrete(const Bsdf &bsdf) { return !(bsdf_traits(bsdf.kind()) & OPAL_SMOOTH); }
+bool is_discrete(const Bsdf &bsdf) { return !(bsdf.traits() & OPAL_SMOOTH); }
 
 Sampled sampled_warp(KernelProbe &probe, int warp, float parameter) {
     Sampled sampled;
@@ -87,10 +87,12 @@ Sampled sampled_warp(KernelProbe &probe, int warp, float parameter) {
 }
 
 Sampled sampled_bsdf(KernelProbe &probe, unsigned id, Vec3 wi) {
-    const uint kind = bsdf_kind(probe.scene(), probe.scene().meshes.at(id));
+    const FlatScene &scene = probe.scene();
+    unsigned traits = 0;
+    visit_bsdfs(scene, scene.meshes.at(id).bsdf, [&](uint at) { traits |= bsdf_traits(scene.bsdfs[at]); });
     Sampled sampled;
-    sampled.name = bsdf_name(kind);
-    if (!(bsdf_traits(kind) & OPAL_SMOOTH))
+    sampled.name = bsdf_name(scene.bsdfs[scene.meshes[id].bsdf]);
+    if (!(traits & OPAL_SMOOTH))
         throw Error(fmt::format("a {} is discrete: its directions have no density to compare with", sampled.name));
     sampled.domain = &stats::domain(DomainKind::sphere);
     sampled.may_fail = true;

@@ -142,7 +142,7 @@ std::string program_text(const Features &features, const BuildOptions &options, 
 #undef OPAL_FEATURE_ROW
 #define OPAL_TEXTURED_ROW(name, traits)                                                                                \
     text += fmt::format("#define OPAL_TEXTURED_bsdf_" #name " {}\n", features.textured[BSDF_##name]);
-    OPAL_BSDFS(OPAL_TEXTURED_ROW)
+    OPAL_ALL_BSDFS(OPAL_TEXTURED_ROW)
 #undef OPAL_TEXTURED_ROW
 #define OPAL_AXIS_DEFINE(axis, help)                                                                                   \
     text += fmt::format("#define OPAL_AXIS_" #axis " {}\n", features.axes[AXIS_##axis]);

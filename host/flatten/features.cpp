@@ -36,7 +36,7 @@ public:
 
 #define OPAL_DECIDE_BSDF(name, traits)                                                                                 \
     Decision bsdf_##name() const { return bsdf(BSDF_##name); }
-    OPAL_BSDFS(OPAL_DECIDE_BSDF)
+    OPAL_ALL_BSDFS(OPAL_DECIDE_BSDF)
 #undef OPAL_DECIDE_BSDF
 
 #define OPAL_DECIDE_EMITTER(name, traits)                                                                              \
@@ -47,7 +47,11 @@ public:
     Decision bsdf(uint kind) const {
         if (unlit)
             return {false, "this integrator asks no BSDF"};
-        const auto has = [&](const MeshRecord &mesh) { return bsdf_kind(scene, mesh) == kind; };
+        const auto has = [&](const MeshRecord &mesh) {
+            bool found = false;
+            visit_bsdfs(scene, mesh.bsdf, [&](uint at) { found = found || scene.bsdfs[at] == kind; });
+            return found;
+        };
         return counted(std::size_t(std::count_if(scene.meshes.begin(), scene.meshes.end(), has)), scene.meshes.size(),
                        "mesh", "meshes");
     }
@@ -131,10 +135,12 @@ int find_hemisphere(const SceneDescription &description, const FlatScene &scene,
         return chosen;
     std::size_t cosine = 0, all = 0;
     for (const MeshRecord &mesh : scene.meshes)
-        if (bsdf_kind(scene, mesh) == BSDF_diffuse) {
-            all++;
-            cosine += record_of<bsdf_diffuse_record>(scene.bsdfs, mesh.bsdf).use_cosine != 0;
-        }
+        visit_bsdfs(scene, mesh.bsdf, [&](uint at) {
+            if (scene.bsdfs[at] == BSDF_diffuse) {
+                all++;
+                cosine += record_of<bsdf_diffuse_record>(scene.bsdfs, at).use_cosine != 0;
+            }
+        });
     if (all == 0 || (cosine > 0 && cosine < all))
         return chosen;
     reason = cosine ? "all diffuse materials use_cosine" : "no diffuse material has use_cosine";
@@ -146,15 +152,15 @@ std::array<uint, BSDF_COUNT> find_textured(const FlatScene &scene, bool speciali
     std::array<uint, BSDF_COUNT> textured{};
     if (TEXTURE_COUNT > 0 && !specialise)
         textured.fill(~0u);
-    for (const MeshRecord &mesh : scene.meshes) {
-        const uint kind = bsdf_kind(scene, mesh);
-        uint place = 0;
-        for (const Parameter &parameter : bsdf_parameters(kind)) {
-            if (parameter.texture_word && scene.bsdfs[mesh.bsdf + parameter.texture_word] != OPAL_UNTEXTURED)
-                textured[kind] |= 1u << place;
-            place++;
-        }
-    }
+    for (const MeshRecord &mesh : scene.meshes)
+        visit_bsdfs(scene, mesh.bsdf, [&](uint at) {
+            uint place = 1;
+            for (const Parameter &parameter : bsdf_parameters(scene.bsdfs[at])) {
+                if (parameter.texture_word && scene.bsdfs[at + parameter.texture_word] != OPAL_UNTEXTURED)
+                    textured[scene.bsdfs[at]] |= place;
+                place *= 2;
+            }
+        });
     return textured;
 }
 

@@ -46,8 +46,13 @@ struct FlatScene {
     double bvh_seconds = 0; // wall time of the build
 };
 
-// The kind of a mesh's BSDF (BSDF_*).
-inline uint bsdf_kind(const FlatScene &scene, const MeshRecord &mesh) { return scene.bsdfs[mesh.bsdf]; }
+// Calls visit(at) for the record of a mesh's BSDF and those that it leads to; at: the first word in scene.bsdfs.
+template <class Visit> void visit_bsdfs(const FlatScene &scene, uint at, Visit visit) {
+    visit(at);
+    for (const Parameter &parameter : bsdf_parameters(scene.bsdfs[at]))
+        if (parameter.type == ParameterType::BSDF)
+            visit_bsdfs(scene, scene.bsdfs[at + parameter.word], visit);
+}
 
 // lanes: the width that the kernel will have; decides whether triangles are listed beside the tree.
 FlatScene flatten(const SceneDescription &scene, int lanes);

@@ -68,15 +68,37 @@ std::vector<uint> words_with_hemisphere(const Bsdf &bsdf, int hemisphere) {
     return words_of(record);
 }
 
-void gather_bsdfs(const SceneDescription &description, FlatScene &scene) {
-    std::map<std::vector<uint>, uint> known; // first word of the record in scene.bsdfs
-    for (const Mesh &mesh : description.meshes) {
-        const auto words = words_with_hemisphere(mesh.bsdf, description.strategy[AXIS_hemisphere]);
-        const auto [found, is_new] = known.try_emplace(words, uint(scene.bsdfs.size()));
+class BsdfGatherer {
+public:
+    BsdfGatherer(int hemisphere, std::vector<uint> &table) : hemisphere_(hemisphere), table_(table) {}
+
+    // Returns the first word of the record. BSDFs come after those that they lead to.
+    uint add(const Bsdf &bsdf) {
+        std::vector<uint> words = words_with_hemisphere(bsdf, hemisphere_);
+        auto child = bsdf.children.begin();
+        for (const Parameter &parameter : bsdf_parameters(bsdf.kind()))
+            if (parameter.type == ParameterType::BSDF)
+                words[parameter.word] = add(*child++);
+        const auto [found, is_new] = known_.try_emplace(words, uint(table_.size()));
         if (is_new)
-            scene.bsdfs.insert(scene.bsdfs.end(), words.begin(), words.end());
-        scene.meshes.push_back({found->second, OPAL_NONE});
+            table_.insert(table_.end(), words.begin(), words.end());
+        return found->second;
     }
+
+private:
+    int hemisphere_;
+    std::vector<uint> &table_;
+    std::map<std::vector<uint>, uint> known_; // first word of each record
+};
+
+void gather_bsdfs(const SceneDescription &description, FlatScene &scene) {
+    BsdfGatherer gatherer(description.strategy[AXIS_hemisphere], scene.bsdfs);
+    for (const Mesh &mesh : description.meshes)
+        scene.meshes.push_back({gatherer.add(mesh.bsdf), OPAL_NONE});
+        // Lanes that are not meant read records of other kinds as far as the longest one reaches.
+#define OPAL_BSDF_SIZE(name, traits) sizeof(bsdf_##name##_record),
+    const std::size_t longest = std::max({OPAL_ALL_BSDFS(OPAL_BSDF_SIZE)});
+    scene.bsdfs.resize(scene.bsdfs.size() + longest / sizeof(uint));
 }
 
 // Point lights and the corners of emitting triangles: every shadow ray ends at one of these points or in their convex

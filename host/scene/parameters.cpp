@@ -39,7 +39,7 @@ std::span<const Parameter> bsdf_parameters(uint kind) {
         using Record [[maybe_unused]] = bsdf_##name##_record;                                                          \
         return std::vector<Parameter>{OPAL_BSDF_##name(OPAL_PARAMETER_ROW)};                                           \
     }(),
-    static const std::vector<Parameter> tables[] = {OPAL_BSDFS(OPAL_BSDF_PARAMETERS)};
+    static const std::vector<Parameter> tables[] = {OPAL_ALL_BSDFS(OPAL_BSDF_PARAMETERS)};
     return tables[kind];
 }
 
@@ -59,7 +59,7 @@ std::string text_of_initial(const Parameter &parameter) {
 }
 
 const char *xml_tag(ParameterType type) {
-    static const char *const tags[] = {"color", "float", "boolean"};
+    static const char *const tags[] = {"color", "float", "boolean", "bsdf"};
     return tags[static_cast<size_t>(type)];
 }
 

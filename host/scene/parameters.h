@@ -25,7 +25,7 @@ constexpr ValueRange AT_LEAST(double least) { return {least}; }
 constexpr ValueRange ABOVE(double least) { return {least, INFINITY, true}; }
 constexpr ValueRange BETWEEN(double least, double most) { return {least, most}; }
 
-enum class ParameterType { COLOR, NUMBER, FLAG };
+enum class ParameterType { COLOR, NUMBER, FLAG, BSDF };
 
 struct Parameter {
     ParameterType type;

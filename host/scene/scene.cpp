@@ -12,7 +12,7 @@ std::string SourcePlace::text() const {
 
 const char *bsdf_name(unsigned kind) {
 #define OPAL_BSDF_NAME(name, traits) #name,
-    static const char *const names[] = {OPAL_BSDFS(OPAL_BSDF_NAME)};
+    static const char *const names[] = {OPAL_ALL_BSDFS(OPAL_BSDF_NAME)};
     return names[kind];
 }
 
@@ -20,9 +20,18 @@ const char *bsdf_name(unsigned kind) {
 
 unsigned bsdf_traits(unsigned kind) {
 #define OPAL_BSDF_TRAITS(name, traits) traits,
-    static const unsigned all[] = {OPAL_BSDFS(OPAL_BSDF_TRAITS)};
+#define OPAL_NO_TRAITS(name, refused) 0,
+    static const unsigned all[] = {OPAL_BSDFS(OPAL_BSDF_TRAITS) OPAL_NESTING_BSDFS(OPAL_NO_TRAITS)};
 #undef OPAL_BSDF_TRAITS
+#undef OPAL_NO_TRAITS
     return all[kind];
+}
+
+unsigned Bsdf::traits() const {
+    unsigned traits = bsdf_traits(kind());
+    for (const Bsdf &child : children)
+        traits |= child.traits();
+    return traits;
 }
 
 const char *emitter_name(unsigned kind) {

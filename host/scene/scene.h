@@ -25,19 +25,22 @@ struct SourcePlace {
 
 // Names of kinds, as the XML gives them: "diffuse", "mesh".
 const char *bsdf_name(unsigned kind);    // kind: BSDF_*
-unsigned bsdf_traits(unsigned kind);     // OPAL_SMOOTH and so on, as bits
+unsigned bsdf_traits(unsigned kind);     // OPAL_SMOOTH and so on, as bits; 0 of a kind that leads to others
 const char *emitter_name(unsigned kind); // kind: EMITTER_*
 unsigned emitter_traits(unsigned kind);  // OPAL_DELTA and so on, as bits
 
-// A material: the record of its kind, ready for the device. By default a grey diffuse one.
+// A material: the record of its kind, ready for the device but for the places of the BSDFs that it leads to. By default
+// a grey diffuse one.
 struct Bsdf {
-    std::vector<uint> words; // of a bsdf_NAME_record
+    std::vector<uint> words;    // of a bsdf_NAME_record
+    std::vector<Bsdf> children; // of its parameters of type BSDF, in their order
     SourcePlace place;
 
     Bsdf() : Bsdf(bsdf_diffuse_record{}) {}
     template <class Record> Bsdf(const Record &record) : words(words_of(record)) {}
 
     uint kind() const { return words[0]; } // BSDF_*
+    unsigned traits() const;               // OPAL_SMOOTH and so on, as bits; those of its children where it has some
     template <class Record> bool is() const { return kind() == Record{}.kind; }
     template <class Record> Record as() const { return record_of<Record>(words); } // is<Record>() must hold
 };

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -26,7 +27,7 @@ Planes random_numbers(KernelProbe &probe, size_t count, unsigned seed) {
 // to 2 %. Directions are rounded: the half vector of one is off by some 2^-24 / (wi . h), which Beckmann's density
 // magnifies by 2 tan / alpha^2.
 bool sample_fits(const Planes &drawn, const Planes &f, size_t i) {
-    const double cosine = std::max(0.f, drawn.at(BSDF_WO_Z, i)), pdf = f.at(EVAL_PDF, i);
+    const double cosine = std::abs(drawn.at(BSDF_WO_Z, i)), pdf = f.at(EVAL_PDF, i);
     bool fits = std::abs(drawn.at(BSDF_PDF, i) - pdf) <= 2e-2 * pdf;
     for (size_t c = 0; c < 3; c++) {
         const double weight = drawn.at(BSDF_WEIGHT_R + c, i), ratio = pdf > 0 ? f.at(EVAL_R + c, i) * cosine / pdf : 0;
@@ -62,7 +63,7 @@ Findings check_samples(KernelProbe &probe, unsigned id, Vec3 wi, const std::stri
             const double weight = drawn.at(BSDF_WEIGHT_R + c, i), pdf = drawn.at(BSDF_PDF, i);
             weights.add(weight);
             if (weight > 0)
-                differences.add(std::abs(f.at(EVAL_R + c, i) * wos[i].z / (pdf * weight) - 1));
+                differences.add(std::abs(f.at(EVAL_R + c, i) * std::abs(wos[i].z) / (pdf * weight) - 1));
         }
         weight_error = worst_of(weight_error, differences.mean());
         energy = worst_of(energy, weights.mean() - 5 * std::sqrt(weights.variance_of_mean()));
@@ -78,7 +79,7 @@ Finding check_reciprocity(KernelProbe &probe, unsigned id, Vec3 wi, const std::s
     std::vector<Vec3> wos;
     for (double degrees : {0.0, 20.0, 50.0, 75.0})
         for (double azimuth : {0.3, 2.0, 3.3})
-            wos.push_back(direction_at(degrees, azimuth));
+            wos.push_back(direction_at(wi.z > 0 ? degrees : 180 - degrees, azimuth));
     const Planes there = probe.bsdf_eval(id, wi, wos);
     double error = 0;
     for (size_t i = 0; i < wos.size(); i++) {
@@ -98,6 +99,12 @@ Finding check_corners(KernelProbe &probe, unsigned id, Vec3 wi, const std::strin
         for (size_t plane = 0; plane < BSDF_PLANES; plane++)
             invalid += !std::isfinite(drawn.at(plane, i));
     return none_wrong("BSDFs: not finite at corners", invalid, subject);
+}
+
+bool is_seen_from_behind(KernelProbe &probe, unsigned id) {
+    const Planes drawn = probe.bsdf_sample(id, direction_at(130), random_numbers(probe, 64, 0));
+    const auto begin = drawn.values.begin() + std::ptrdiff_t(BSDF_WEIGHT_R * drawn.stride);
+    return std::any_of(begin, begin + std::ptrdiff_t(3 * drawn.stride), [](float weight) { return weight > 0; });
 }
 
 // What a discrete BSDF must do with light from wi.
@@ -166,7 +173,10 @@ Findings material_findings(KernelProbe &probe, const std::vector<Material> &mate
     unsigned seed = effort.seed;
     for (unsigned id = 0; id < materials.size(); id++) {
         const bool discrete = is_discrete(materials[id].bsdf);
-        for (double angle : effort.angles) {
+        std::vector<double> angles = effort.angles;
+        if (!discrete && is_seen_from_behind(probe, id))
+            angles.push_back(130);
+        for (double angle : angles) {
             const Vec3 wi = direction_at(angle);
             const std::string subject = fmt::format("{} at {:g} degrees", materials[id].name, angle);
             if (!discrete) {

@@ -29,7 +29,7 @@ Findings run_rays(const Device &device, const SelftestOptions &options) {
             flat.features = scene_of_bsdfs({}).features;
             flat.features.list[FEATURE_tree].on = tree;
 #define OPAL_WITHOUT_BSDF(name, traits) flat.features.list[FEATURE_bsdf_##name].on = false;
-            OPAL_BSDFS(OPAL_WITHOUT_BSDF)
+            OPAL_ALL_BSDFS(OPAL_WITHOUT_BSDF)
 #undef OPAL_WITHOUT_BSDF
         }
         return KernelProbe(device, flat, options.build, *options.sources);

@@ -33,7 +33,7 @@ struct Material {
     std::string name;
     Bsdf bsdf;
 };
-// Written as a scene writes them. They are part of the binary, which runs where there are no test cases.
+// Every kind of BSDF, written as a scene writes it. They are part of the binary, which runs where there are no test cases.
 const std::vector<Material> &selftest_materials();
 // A scene of these BSDFs in this order, and nothing else.
 FlatScene scene_of_materials(const std::vector<Material> &materials);

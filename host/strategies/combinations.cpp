@@ -50,7 +50,7 @@ public:
             emitters += mesh.radiance.has_value();
             light_triangles_ = light_triangles_ || (mesh.radiance && triangles && triangles->triangles.size() > 1);
             diffuse_ = diffuse_ || mesh.bsdf.kind() == BSDF_diffuse;
-            refracts_ = refracts_ || (bsdf_traits(mesh.bsdf.kind()) & OPAL_TRANSMITS);
+            refracts_ = refracts_ || (mesh.bsdf.traits() & OPAL_TRANSMITS);
             mesh.shape = Parallelogram{};
         }
         many_emitters_ = emitters > 1;

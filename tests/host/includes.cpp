@@ -129,7 +129,7 @@ const std::vector<Room> floors = {
     {"film", {"shared", "core", "scene.cl", "camera.cl"}},
     {"textures", {"shared", "textures/list.h", "core", "scene.cl"}},
     {"parameters.cl", {"shared", "core", "scene.cl", "textures"}},
-    {"bsdfs", {"shared", "bsdfs/list.h", "core", "scene.cl", "parameters.cl"}},
+    {"bsdfs", {"shared", "bsdfs/list.h", "core", "scene.cl", "surface.cl", "parameters.cl"}},
     {"emitters", {"shared", "emitters/list.h", "core", "scene.cl", "surface.cl"}},
     {"integrators", {"shared", "core", "scene.cl", "trace", "surface.cl", "bsdfs", "emitters"}},
     {"kernels",

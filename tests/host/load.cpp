@@ -261,8 +261,12 @@ TEST_CASE_METHOD(LoadFixture, "BSDF values that make no sense fail at their plac
     CHECK_THAT(bsdf_error("dielectric", "<float name='intIOR' value='0'/>"), Catch::StartsWith(":4:1: "));
     CHECK_THAT(bsdf_error("phong", "<float name='pd' value='1.5'/>"), Catch::StartsWith(":4:1: "));
     CHECK_THAT(bsdf_error("phong", "<float name='n' value='-1'/>"), Catch::StartsWith(":4:1: "));
+    CHECK_THAT(bsdf_error("twosided", "<bsdf type='dielectric'/>"),
+               Catch::EndsWith("a twosided cannot hold a BSDF that light passes through"));
+    CHECK_THAT(bsdf_error("twosided", ""), Catch::EndsWith("a twosided has 1 <bsdf> within it, not 0"));
+    CHECK_THAT(bsdf_error("diffuse", "<bsdf type='mirror'/>"), Catch::Contains("bsdf"));
     CHECK(bsdf_error("difuse", "") == ":3:28: unknown bsdf type 'difuse'; did you mean 'diffuse'? available: diffuse, "
-                                      "mirror, dielectric, microfacet, phong");
+                                      "mirror, dielectric, microfacet, phong, twosided");
     CHECK(bsdf_error("area", "").starts_with(":3:28: unknown bsdf type 'area'; "));
     CHECK(bsdf_error("mirror", "<float name='alpha' value='1'/>") ==
           ":4:1: unknown property 'alpha' of bsdf 'mirror'; available: use_cosine");

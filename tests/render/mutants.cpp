@@ -62,7 +62,7 @@ const std::vector<Control> lights = {
       "return 1 / GATHER(real, scene->light_triangles, row, .inverse_pdf);"},
      "triangle light",
      check_triangle_light},
-    {{"MIS by the light's density alone where a light is sampled", "integrators/steps.cl", "bsdf_pdf * inverse_pdf)",
+    {{"MIS by the light's density alone where a light is sampled", "integrators/steps.cl", "bsdf.pdf * inverse_pdf)",
       "inverse_pdf)"},
      "triangle light",
      check_triangle_light},

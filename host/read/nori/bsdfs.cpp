@@ -10,14 +10,6 @@ namespace opal {
 
 namespace {
 
-struct BsdfType {
-    std::string name;
-    std::vector<uint> words; // its record with all defaults
-};
-
-#define OPAL_BSDF_TYPE(name, traits) {#name, words_of(bsdf_##name##_record{})},
-const std::vector<BsdfType> bsdf_types = {OPAL_BSDFS(OPAL_BSDF_TYPE)};
-
 // Numbers are checked as the device will see them, in single precision.
 uint checked_word(const Properties &properties, const Parameter &parameter, double value) {
     const float number = static_cast<float>(value);
@@ -26,9 +18,21 @@ uint checked_word(const Properties &properties, const Parameter &parameter, doub
     return std::bit_cast<uint>(number);
 }
 
-// Sets the words of a parameter that the object has.
+struct BsdfType {
+    std::string name;
+    std::vector<uint> words; // its record with all defaults
+    unsigned refused;        // traits that its children must not have
+};
+
+#define OPAL_BSDF_TYPE(name, traits) {#name, words_of(bsdf_##name##_record{}), 0},
+#define OPAL_NESTING_TYPE(name, refused) {#name, words_of(bsdf_##name##_record{}), refused},
+const std::vector<BsdfType> bsdf_types = {OPAL_BSDFS(OPAL_BSDF_TYPE) OPAL_NESTING_BSDFS(OPAL_NESTING_TYPE)};
+
+// Sets the words of a parameter that the object has. A BSDF is no property: add_children reads it.
 void read_parameter(Properties &properties, const Parameter &parameter, std::span<uint> words) {
     switch (parameter.type) {
+    case ParameterType::BSDF:
+        break;
     case ParameterType::COLOR:
         if (const auto color = properties.color(parameter.xml_name))
             for (size_t i = 0; i < 3; i++)
@@ -45,15 +49,33 @@ void read_parameter(Properties &properties, const Parameter &parameter, std::spa
     }
 }
 
+// Reads the BSDFs within a BSDF, as many as it has parameters of that type.
+void add_children(Properties &properties, const BsdfType &type, Bsdf &bsdf) {
+    const auto parameters = bsdf_parameters(bsdf.kind());
+    const auto wanted = std::count_if(parameters.begin(), parameters.end(),
+                                      [](const Parameter &p) { return p.type == ParameterType::BSDF; });
+    if (wanted == 0)
+        return;
+    for (const XmlNode &node : properties.children("bsdf")) {
+        const Bsdf &child = bsdf.children.emplace_back(parse_bsdf(node, properties.context()));
+        if (child.traits() & type.refused & OPAL_TRANSMITS)
+            node.fail(fmt::format("a {} cannot hold a BSDF that light passes through", type.name));
+    }
+    if (std::ssize(bsdf.children) != wanted)
+        properties.fail(fmt::format("a {} has {} <bsdf> within it, not {}", type.name, wanted, bsdf.children.size()));
+}
+
 } // namespace
 
 Bsdf parse_bsdf(const XmlNode &node, const ParseContext &context) {
     Properties properties(node, context);
     Bsdf bsdf;
     bsdf.place = node.place();
-    bsdf.words = row_of_type(node, bsdf_types).words;
+    const BsdfType &type = row_of_type(node, bsdf_types);
+    bsdf.words = type.words;
     for (const Parameter &parameter : bsdf_parameters(bsdf.kind()))
         read_parameter(properties, parameter, bsdf.words);
+    add_children(properties, type, bsdf);
     properties.ignore("use_cosine"); // exporters write it for every material
     properties.finish();
     return bsdf;

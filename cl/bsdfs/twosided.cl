@@ -1,0 +1,13 @@
+// twosided: one BSDF on both sides of a surface, for BSDFs that reflect on the front alone.
+//   <bsdf type="twosided"> <bsdf type="diffuse"/> </bsdf>
+// Seen from behind, the shading normal points the other way. What a surface emits leaves on its front alone.
+#include "bsdfs/interface.cl"
+#include "core/lanes.cl"
+
+static BsdfOpening twosided_open(twosided_bsdf b, BsdfOpening o) {
+    mask behind = o.wi.z < 0;
+    o.at = b.base;
+    o.wi.z = fabs(o.wi.z);
+    o.frame.n = v3_pick(behind, v3_neg(o.frame.n), o.frame.n);
+    return o;
+}
