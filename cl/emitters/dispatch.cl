@@ -80,9 +80,10 @@ static uints emitter_met(const Scene *scene, Surface s, mask hit, mask active, m
     *met = active & hit & to_mask(s.emitter != OPAL_NONE) & (s.wi.z > 0);
     uints id = s.emitter;
     if (ENVIRONMENT_KINDS > 0) {
-        mask escaped = active & !hit;
+        uints environment = (uints)(scene->settings->environment);
+        mask escaped = active & !hit & to_mask(environment != OPAL_NONE);
         *met = *met | escaped;
-        id = uints_pick(escaped, (uints)(0), id);
+        id = uints_pick(escaped, environment, id);
     }
     return OPAL_HAS_many_emitters ? uints_pick(*met, id, (uints)(0)) : (uints)(0);
 }

@@ -1,6 +1,7 @@
 #include "flatten/geometry.h"
 
 #include "base/log.h"
+#include "flatten/emitter_kinds.h"
 
 #include <fmt/format.h>
 
@@ -102,6 +103,8 @@ void Extent::add(const Extent &other) {
 
 double Extent::longest_side() const { return empty() ? 0 : std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z}); }
 
+double Extent::radius() const { return empty() ? 0 : length(hi - lo) / 2; }
+
 Extent extent_of(const Mesh &mesh) {
     Extent extent;
     std::visit([&](const auto &shape) { add_extent(shape, extent); }, mesh.shape);
@@ -113,8 +116,8 @@ Extent extent_of(const SceneDescription &scene) {
     for (const Mesh &mesh : scene.meshes)
         if (const Extent part = extent_of(mesh); !part.empty())
             extent.add(part);
-    for (const PointLight &light : scene.point_lights)
-        extent.add(light.position);
+    for (const Light &light : scene.lights)
+        add_extent(light, extent);
     return extent;
 }
 

@@ -14,10 +14,12 @@ struct Extent {
     void add(const Extent &other);
     bool empty() const { return lo.x > hi.x; }
     Vec3 middle() const { return lo * 0.5 + hi * 0.5; }
+    Vec3 corner(unsigned i) const { return {i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z}; } // of 8
     double longest_side() const; // 0 if empty
+    double radius() const;       // of the sphere through the corners; 0 if empty
 };
 Extent extent_of(const Mesh &mesh);              // of the positions that triangles use
-Extent extent_of(const SceneDescription &scene); // of all meshes and point lights, without the camera
+Extent extent_of(const SceneDescription &scene); // of all meshes and lights, without the camera
 
 // The map from world space to flattened units, (position - center) * scale. Distances grow by the factor `scale`, areas
 // by its square; directions stay. The scale is a power of two, so that nothing but the subtraction rounds in double.

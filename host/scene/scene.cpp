@@ -16,14 +16,10 @@ const char *bsdf_name(unsigned kind) {
     return names[kind];
 }
 
-#undef OPAL_NAME
-
 unsigned bsdf_traits(unsigned kind) {
 #define OPAL_BSDF_TRAITS(name, traits) traits,
 #define OPAL_NO_TRAITS(name, refused) 0,
     static const unsigned all[] = {OPAL_BSDFS(OPAL_BSDF_TRAITS) OPAL_NESTING_BSDFS(OPAL_NO_TRAITS)};
-#undef OPAL_BSDF_TRAITS
-#undef OPAL_NO_TRAITS
     return all[kind];
 }
 
@@ -35,17 +31,22 @@ unsigned Bsdf::traits() const {
 }
 
 const char *emitter_name(unsigned kind) {
-#define OPAL_NAME(name, traits) #name,
-    static const char *const names[] = {OPAL_EMITTERS(OPAL_NAME)};
-#undef OPAL_NAME
+#define OPAL_EMITTER_NAME(name, traits) #name,
+    static const char *const names[] = {OPAL_EMITTERS(OPAL_EMITTER_NAME)};
     return names[kind];
 }
 
 unsigned emitter_traits(unsigned kind) {
-#define OPAL_TRAITS(name, traits) traits,
-    static const unsigned all[] = {OPAL_EMITTERS(OPAL_TRAITS)};
-#undef OPAL_TRAITS
+#define OPAL_EMITTER_TRAITS(name, traits) traits,
+    static const unsigned all[] = {OPAL_EMITTERS(OPAL_EMITTER_TRAITS)};
     return all[kind];
+}
+
+const Light *light_missed_by_bsdfs(const SceneDescription &scene) {
+    for (const Light &light : scene.lights)
+        if (!can_be_met(light.kind()))
+            return &light;
+    return nullptr;
 }
 
 } // namespace opal

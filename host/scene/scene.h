@@ -3,8 +3,9 @@
 
 #include "base/color.h"
 #include "base/math.h"
-#include "emitters/list.h"
+#include "scene/emitters.h"
 #include "scene/parameters.h"
+#include "scene/place.h"
 #include "scene/strategy.h"
 #include "shared/types.h"
 
@@ -16,18 +17,8 @@
 
 namespace opal {
 
-// A place in a file. Line and column count from 1; 0: unknown.
-struct SourcePlace {
-    std::string file;
-    int line = 0, column = 0;
-    std::string text() const; // "file:line:col"
-};
-
-// Names of kinds, as the XML gives them: "diffuse", "mesh".
-const char *bsdf_name(unsigned kind);    // kind: BSDF_*
-unsigned bsdf_traits(unsigned kind);     // OPAL_SMOOTH and so on, as bits; 0 of a kind that leads to others
-const char *emitter_name(unsigned kind); // kind: EMITTER_*
-unsigned emitter_traits(unsigned kind);  // OPAL_DELTA and so on, as bits
+const char *bsdf_name(unsigned kind); // as the XML gives it, "diffuse"; kind: BSDF_*
+unsigned bsdf_traits(unsigned kind);  // OPAL_SMOOTH and so on, as bits; 0 of a kind that leads to others
 
 // A material: the record of its kind, ready for the device but for the places of the BSDFs that it leads to. By default
 // a grey diffuse one.
@@ -66,12 +57,6 @@ struct Mesh {
     SourcePlace place;
 };
 
-struct PointLight {
-    Vec3 position;
-    Color power; // W; intensity = power / (4 pi)
-    SourcePlace place;
-};
-
 struct Filter {
     int kind = FILTER_box;
     double radius = 0.5, stddev = 0.5, b = 1.0 / 3, c = 1.0 / 3;
@@ -96,7 +81,7 @@ struct SceneDescription {
     std::filesystem::path file;
     Camera camera;
     std::vector<Mesh> meshes;
-    std::vector<PointLight> point_lights;
+    std::vector<Light> lights;                // beside the meshes that emit
     std::string integrator_type = "path_mis"; // as written, e.g. path_tracer_recursive; path_mis where there is none
     bool university_dialect = false;          // the integrator's name is one of the 2022 course
     Strategy strategy;
@@ -104,5 +89,8 @@ struct SceneDescription {
     SimpleLight simple_light;
     unsigned spp = 1;
 };
+
+// The first light that no BSDF sample can hit, or null.
+const Light *light_missed_by_bsdfs(const SceneDescription &scene);
 
 } // namespace opal

@@ -50,7 +50,7 @@ TEST_CASE("What computes wrong is found", "[selftest][stat]") {
         {"bsdfs", "bsdfs/microfacet.cl", "(4 * fabs(v3_dot(h, wo)));", "(4.1f * fabs(v3_dot(h, wo)));",
          "BSDFs: samples"},
         {"bsdfs", "bsdfs/dielectric.cl", "square(boundary.inverse_eta)", "boundary.inverse_eta", "mirror, dielectric"},
-        {"lights", "emitters/mesh.cl", "folded ? 1 - u.x", "folded ? u.x", "lights: points"},
+        {"lights", "emitters/mesh.cl", "folded ? 1 - u.x", "folded ? u.x", "lights: directions"},
         {"rays", "trace/one_lane/walk.cl", "near_x = inverse.x < 0", "near_x = inverse.x > 0", "tree: hits", true},
         {"images", "integrators/steps.cl", "fabs(wo.z) * inverse_pdf", "inverse_pdf", "furnace"},
     };

@@ -51,6 +51,7 @@ const std::vector<Room> rooms = {
     {"strategies", {"base", "cl", "scene"}},
     {"bvh", {"base", "cl"}},
     {"flatten", {"base", "cl", "scene", "bvh"}},
+    {"flatten/emitters", {"base", "cl", "scene", "bvh", "flatten"}},
     {"device", {"base", "cl", "scene", "flatten"}},
     {"film", {"base", "cl", "image"}},
     {"render", {"base", "cl", "scene", "flatten", "device", "image", "stats", "film"}},
@@ -70,8 +71,9 @@ const std::vector<Room> rooms = {
                   "device",   "image",       "stats",   "plot",  "film",      "render",     "probe", "densities",
                   "selftest", "conformance", "compare", "bench", "extremes",  "sweep"}},
 };
-const std::set<std::string> without_opencl = {"base",      "image",      "stats", "plot",    "scene", "read",
-                                              "read/nori", "strategies", "bvh",   "flatten", "film",  "compare"};
+const std::set<std::string> without_opencl = {
+    "base", "image",  "stats", "plot", "scene", "read", "read/nori", "strategies", "bvh", "flatten", "flatten/emitters",
+    "film", "compare"};
 
 // The room that a path below host/ lies in: "read/nori" for read/nori/load.h.
 std::string room_of(const std::string &path) { return path.substr(0, path.find_last_of('/')); }

@@ -25,7 +25,7 @@ bool has_light(const SceneDescription &scene) {
     bool needs_none = scene.strategy[AXIS_integrator] == CHOICE_integrator_normals ||
                       scene.strategy[AXIS_integrator] == CHOICE_integrator_ao ||
                       scene.strategy[AXIS_integrator] == CHOICE_integrator_simple;
-    return needs_none || !scene.point_lights.empty() ||
+    return needs_none || !scene.lights.empty() ||
            std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh &mesh) { return mesh.radiance; });
 }
 
@@ -54,7 +54,7 @@ SceneDescription parse_scene(const XmlNode &node, const ParseContext &context) {
     for (const XmlNode &mesh : properties.children("mesh"))
         scene.meshes.push_back(parse_mesh(mesh, context));
     for (const XmlNode &emitter : properties.children("emitter"))
-        scene.point_lights.push_back(parse_scene_emitter(emitter, context));
+        scene.lights.push_back(parse_scene_emitter(emitter, context));
     properties.finish();
     choose_filter(scene);
     warn_if_black(scene, node);
