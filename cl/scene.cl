@@ -35,15 +35,21 @@ typedef struct {
     real tmin, tmax;
 } Ray;
 
-// The nearest hit of each lane: distance, barycentric weights of corners 1 and 2, and the triangle's slot (block * 8 +
-// place), OPAL_NONE where nothing is hit. For face-list hits t is approximate and u, v are unset; surface_at computes
-// all three.
+// The nearest hit of each lane: its distance t; its coordinates u, v on the surface (of triangles the barycentric
+// weights of corners 1 and 2); the shape (SHAPE_*, unset in kernels of one shape); and the primitive's place among the
+// blocks of its shape: block * OPAL_WIDTH + place in the block, OPAL_NONE where nothing is hit. For face-list hits t is
+// approximate and u, v are unset; surface_at computes all three.
 typedef struct {
     real t, u, v;
-    uints slot;
+    uints shape, place;
 } Hit;
 
-static mask is_hit(Hit hit) { return to_mask(hit.slot != OPAL_NONE); }
+static mask is_hit(Hit hit) { return to_mask(hit.place != OPAL_NONE); }
+
+static Hit no_hit(real tmax) {
+    Hit hit = {tmax, (real)(0), (real)(0), (uints)(0), (uints)(OPAL_NONE)};
+    return hit;
+}
 
 // Returns `ray` through a select that cannot be optimised away, as compilers do not know that `always` is true.
 // Benchmarks trace twice and compare (OPAL_REPEAT_traversal).

@@ -4,15 +4,17 @@
 #define OPAL_SCENE_TABLES_H
 
 #include "bsdfs/list.h"
+#include "cameras/list.h"
 #include "emitters/list.h"
+#include "shapes/list.h"
 #include "shared/types.h"
 
 // TABLE(record, name, shown): an array of records; `shown` is what messages call it. The order is that of the
 // parameters.
 #define OPAL_TABLES(TABLE) \
+    TABLE(CameraRecord, cameras, "cameras")                     /* one */ \
     TABLE(BvhNode, nodes, "nodes")                              /* none: no tree */ \
-    TABLE(TriangleBlock, blocks, "blocks") \
-    TABLE(Triangle, triangles, "triangles") \
+    OPAL_SHAPE_TABLES(TABLE) \
     TABLE(float, normals, "normals")                            /* 3 each */ \
     TABLE(float, face_vertices, "listed vertices")              /* of the face list: 3 each, distinct */ \
     TABLE(FaceRecord, faces, "listed faces")                    /* the face list, beside the tree */ \

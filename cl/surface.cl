@@ -1,4 +1,4 @@
-// surface: the points where rays met triangles, and the triangles' vertices and normals.
+// surface: a point where a ray met a surface, and where rays leave it. shapes/dispatch.cl finds it (surface_at).
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "scene.cl"
@@ -6,67 +6,42 @@
 
 typedef struct {
     v3 p;                // position
-    real t, u, v;        // its distance along the ray, barycentric weights of corners 1 and 2
-    v3 normal;           // geometric, unit, on the side of (p1-p0) x (p2-p0)
+    real t, u, v;        // its distance along the ray, and its coordinates (Hit)
+    v3 normal;           // geometric, unit, on the outer side: of triangles that of (p1-p0) x (p2-p0)
     Frame frame;         // around the shading normal
     v3 wi;               // towards the ray's origin, unit, in that frame
-    uints triangle;      // index
+    uints primitive;     // its id (row `id` of blocks): of triangles the index
     real ray_offset;     // how far above the surface rays start (ray_offset_of)
     uints bsdf;          // first word of the BSDF's record
     uints emitter;       // index, OPAL_NONE where the surface does not emit
 } Surface;
 
-// The word of a slot within a row of a block (TriangleBlock, OPAL_WIDTH words a row), counted from the first block's
-// row.
-static uints word_of_slot(uints slot) {
-    return (slot / (uint)(OPAL_WIDTH)) * (uint)(sizeof(TriangleBlock) / 4) + slot % (uint)(OPAL_WIDTH);
+static Surface surface_pick(mask m, Surface yes, Surface no) {
+    Frame frame = {v3_pick(m, yes.frame.s, no.frame.s), v3_pick(m, yes.frame.t, no.frame.t),
+                   v3_pick(m, yes.frame.n, no.frame.n)};
+    Surface s = {v3_pick(m, yes.p, no.p), m ? yes.t : no.t, m ? yes.u : no.u, m ? yes.v : no.v,
+                 v3_pick(m, yes.normal, no.normal), frame, v3_pick(m, yes.wi, no.wi),
+                 uints_pick(m, yes.primitive, no.primitive), m ? yes.ray_offset : no.ray_offset,
+                 uints_pick(m, yes.bsdf, no.bsdf), uints_pick(m, yes.emitter, no.emitter)};
+    return s;
 }
 
-// Corner `corner` of the triangles in `slot`.
-static v3 triangle_vertex(const Scene *scene, uints slot, uint corner) {
-    // A pointer to floats: beyond the first block the words lie past the row, where no array may be indexed.
-    global const float *first = scene->blocks->vertex[corner][0];
-    uints word = word_of_slot(slot);
-    return v3_of(GATHER_WORD(real, first, word), GATHER_WORD(real, (first + OPAL_WIDTH), word),
-                 GATHER_WORD(real, (first + 2 * OPAL_WIDTH), word));
+// All zero, of no emitter: valid for lanes that hit nothing.
+static Surface no_surface(void) {
+    v3 zero = v3_all((real)(0));
+    Frame frame = {zero, zero, zero};
+    Surface s = {zero, (real)(0), (real)(0), (real)(0), zero, frame, zero, (uints)(0), (real)(0), (uints)(0),
+                 (uints)(OPAL_NONE)};
+    return s;
 }
 
-// Index of the triangles in `slot`.
-static uints triangle_id(const Scene *scene, uints slot) {
-    global const uint *first = scene->blocks->id;
-    return GATHER_WORD(uints, first, word_of_slot(slot));
-}
-
-static v3 vertex_normal(const Scene *scene, uints index) {
-    uints word = index * 3u;
-    return v3_of(GATHER_WORD(real, scene->normals, word), GATHER_WORD(real, (scene->normals + 1), word),
-                 GATHER_WORD(real, (scene->normals + 2), word));
-}
-
-// The corner normals of triangles, as indices; `smooth`: the lanes where all three corners have one.
-typedef struct { uints index[3]; mask smooth; } CornerNormals;
-
-static CornerNormals corner_normals(const Scene *scene, uints triangle) {
-    CornerNormals c = {{(uints)(0), (uints)(0), (uints)(0)}, NO_LANES};
-    if (!OPAL_HAS_shading_normals) return c;
-    uints n0 = GATHER(uints, scene->triangles, triangle, .normal[0]);
-    uints n1 = GATHER(uints, scene->triangles, triangle, .normal[1]);
-    uints n2 = GATHER(uints, scene->triangles, triangle, .normal[2]);
-    c.smooth = to_mask(n0 != OPAL_NONE) & to_mask(n1 != OPAL_NONE) & to_mask(n2 != OPAL_NONE);
-    c.index[0] = uints_pick(c.smooth, n0, (uints)(0));
-    c.index[1] = uints_pick(c.smooth, n1, (uints)(0));
-    c.index[2] = uints_pick(c.smooth, n2, (uints)(0));
-    return c;
-}
-
-// The shading normal at barycentric weights u, v: interpolated where all corners have normals, else the geometric one.
-static v3 shading_normal(const Scene *scene, CornerNormals corners, real u, real v, v3 geometric) {
-    if (!OPAL_HAS_shading_normals || !ANY(corners.smooth)) return geometric;
-    v3 n0 = vertex_normal(scene, corners.index[0]);
-    v3 n = v3_mad(vertex_normal(scene, corners.index[1]), u,
-                  v3_mad(vertex_normal(scene, corners.index[2]), v, v3_scale(n0, 1 - u - v)));
-    real length2 = v3_dot(n, n);
-    return v3_pick(corners.smooth & (length2 > 0), v3_scale(n, rsqrt(length2)), geometric);
+// Sets what follows from the shading normal and the mesh: frame, wi, BSDF and emitter. ray.d is unit but for rounding,
+// which would add up in glass and mirrors: one Newton step towards 1 / sqrt(d.d) removes it from wi.
+static void finish_surface(const Scene *scene, Ray ray, v3 shading_normal, uints mesh, Surface *s) {
+    s->frame = frame_of(shading_normal);
+    s->wi = to_local(s->frame, v3_scale(ray.d, R(-1.5) + R(0.5) * v3_dot(ray.d, ray.d)));
+    s->bsdf = GATHER(uints, scene->meshes, mesh, .bsdf);
+    s->emitter = GATHER(uints, scene->meshes, mesh, .emitter);
 }
 
 // The distance above a triangle at which rays start: it bounds the error of a point on the triangle along the normal,
@@ -80,57 +55,6 @@ static v3 shading_normal(const Scene *scene, CornerNormals corners, real u, real
 static real ray_offset_of(v3 p0, v3 p1, v3 p2) {
     real largest = real_max(v3_largest(v3_abs(p0)), real_max(v3_largest(v3_abs(p1)), v3_largest(v3_abs(p2))));
     return RAY_OFFSET_ROUNDINGS * FLOAT_HALF_ULP * largest;
-}
-
-// Barycentric weights that keep points away from the sides stay below a third, the weight of the centroid.
-#define LARGEST_INSET R(0.3333)
-
-// The surface that each active lane hit; the others get the values of slot 0. ray.d is unit but for rounding, which
-// would add up in glass and mirrors: one Newton step towards 1 / sqrt(d.d) removes it from wi.
-static Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask active) {
-    uints slot = uints_pick(active, hit.slot, (uints)(0));
-    // Indices come first: what they lead to is fetched while the rest is computed.
-    uints triangle = triangle_id(scene, slot), mesh = GATHER(uints, scene->triangles, triangle, .mesh);
-    CornerNormals corners = corner_normals(scene, triangle);
-    v3 p0 = triangle_vertex(scene, slot, 0), p1 = triangle_vertex(scene, slot, 1), p2 = triangle_vertex(scene, slot, 2);
-    v3 e1 = v3_sub(p1, p0), e2 = v3_sub(p2, p0);
-    v3 n = v3_cross(e1, e2);
-    real length2 = v3_dot(n, n), inverse_length = rsqrt(length2);
-
-    Surface s;
-    s.normal = v3_scale(n, inverse_length);
-    s.triangle = triangle;
-    s.ray_offset = ray_offset_of(p0, p1, p2);
-    s.t = hit.t;
-    s.u = hit.u;
-    s.v = hit.v;
-    if (OPAL_HAS_face_list) {
-        // A face-list hit is where the ray meets the plane. Edge-on that may be beyond the triangle's sides, or
-        // nowhere: the nearest point of the triangle is taken.
-        mask from_list = to_mask(hit.slot >= scene->settings->face_list_slot);
-        v3 from = v3_sub(ray.o, p0);
-        v3 w = v3_mad(ray.d, -v3_dot(s.normal, from) / v3_dot(s.normal, ray.d), from);
-        real u = real_min(real_max(v3_dot(v3_cross(w, e2), s.normal) * inverse_length, (real)(0)), (real)(1));
-        real v = real_min(real_max(v3_dot(v3_cross(e1, w), s.normal) * inverse_length, (real)(0)), 1 - u);
-        v3 along = v3_mad(e1, u, v3_mad(e2, v, v3_scale(from, (real)(-1))));
-        s.t = from_list ? v3_dot(along, ray.d) / v3_dot(ray.d, ray.d) : s.t;
-        s.u = from_list ? u : s.u;
-        s.v = from_list ? v : s.v;
-    }
-    // The position is computed on the triangle, which is far closer to its plane than o + t d. It is kept two ray
-    // offsets away from the sides where the triangle is wide enough, because a ray that starts on an edge of a closed
-    // room could start outside of it. As a barycentric weight this is 2 offset / height, the height |n| / longest side,
-    // and the longest side at most sqrt(2 (e1^2 + e2^2)).
-    real two_longest = sqrt(8 * (v3_dot(e1, e1) + v3_dot(e2, e2)));
-    real inset = real_min(s.ray_offset * two_longest * inverse_length, (real)(LARGEST_INSET));
-    real u = real_min(real_max(s.u, inset), 1 - 2 * inset);
-    real v = real_min(real_max(s.v, inset), 1 - inset - u);
-    s.p = v3_mad(e1, u, v3_mad(e2, v, p0));
-    s.frame = frame_of(shading_normal(scene, corners, s.u, s.v, s.normal));
-    s.wi = to_local(s.frame, v3_scale(ray.d, R(-1.5) + R(0.5) * v3_dot(ray.d, ray.d)));
-    s.bsdf = GATHER(uints, scene->meshes, mesh, .bsdf);
-    s.emitter = GATHER(uints, scene->meshes, mesh, .emitter);
-    return s;
 }
 
 // Where a ray starts that leaves the surface in direction d: the ray offset above p, on d's side.

@@ -1,8 +1,7 @@
 // dielectric: a smooth boundary between two transparent media, two-sided, discrete.
 //   <bsdf type="dielectric"> <float name="intIOR" value="1.5046"/> <float name="extIOR" value="1.000277"/> </bsdf>
 // Reflects with the Fresnel reflectance as probability, rounded up to the random numbers' grid; else refracts by
-// Snell's law. Refraction scales radiance by (1/eta)^2, where eta is the index of the far side over that of the near
-// side (Veach 1997, section 5.2); eta is reported with the sample.
+// Snell's law, and reports eta, the index of the far side over that of the near side.
 #include "bsdfs/fresnel.cl"
 #include "bsdfs/interface.cl"
 #include "core/lanes.cl"
@@ -23,7 +22,7 @@ static BsdfSample dielectric_sample(dielectric_bsdf b, v3 wi, v2 u, real lobe) {
     mask reflects = reflection.first;
     v3 refracted = v3_of(-wi.x * boundary.inverse_eta, -wi.y * boundary.inverse_eta,
                          outside ? -far_cosine : far_cosine);
-    real weight = (reflects ? fresnel : (1 - fresnel) * square(boundary.inverse_eta)) / reflection.probability;
+    real weight = (reflects ? fresnel : 1 - fresnel) / reflection.probability;
     return bsdf_sample_of(v3_pick(reflects, reflect_z(wi), refracted), v3_all(wi.z != 0 ? weight : (real)(0)),
                           (real)(0), reflects ? (real)(1) : boundary.eta, ALL_LANES);
 }

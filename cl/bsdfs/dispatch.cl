@@ -7,8 +7,10 @@
 #include "surface.cl"
 
 #define COUNT_BSDF(name, traits) +OPAL_HAS_bsdf_##name
+#define COUNT_TRANSMITTING(name, traits) +(OPAL_HAS_bsdf_##name && ((traits) & OPAL_TRANSMITS) != 0)
 enum { // of this kernel
     BSDF_KINDS = 0 OPAL_BSDFS(COUNT_BSDF),
+    TRANSMITTING_BSDF_KINDS = 0 OPAL_BSDFS(COUNT_TRANSMITTING),
     NESTING_BSDF_KINDS = 0 OPAL_NESTING_BSDFS(COUNT_BSDF)
 };
 

@@ -49,9 +49,9 @@ static BsdfOpening bsdf_opening_pick(mask m, BsdfOpening yes, BsdfOpening no) {
 
 typedef struct {
     v3 wo;           // unit
-    v3 weight;       // f cos / pdf, of a discrete BSDF the radiance's factor; 0 where nothing is reflected, never NaN
+    v3 weight;       // f cos / pdf, of a discrete BSDF the part of the power; 0 where nothing is reflected, never NaN
     real pdf;        // equals NAME_pdf(wo) up to rounding; 0 where discrete
-    real eta;        // index of refraction of wo's side over wi's side
+    real eta;        // index of refraction of wo's side over wi's side; paths of radiance divide by its square
     mask discrete;   // wo has no density, so that light sampling cannot find it
 } BsdfSample;
 

@@ -2,18 +2,37 @@
 // how its samples are cut into passes or spread over lanes. Every number is k 2^-24 with k < 2^24: in [0, 1), exact in
 // float. draw() in scene.cl picks the sampler that the scene asks for.
 //
-// A dimension is a pair of numbers. Dimension 0 places the sample in its pixel; a path's segment d owns the
-// DIMS_A_SEGMENT dimensions from 1 + d DIMS_A_SEGMENT on.
+// A dimension is a pair of numbers, drawn by its key. The camera has DIM_FILM (key 0), which places the sample in its
+// pixel, and each segment of a path has the DIMS_A_SEGMENT dimensions below (keys from 1 on). These leave no room for
+// another one, and moving them would change all pictures. A new dimension is ADDED_DIMENSION + n, with an n below
+// ADDED_A_SEGMENT that its segment, or the camera, does not have yet. Nothing else is reserved.
 #include "core/lanes.cl"
 #include "core/math.cl"
 
+#define ADDED_DIMENSION 0x80000000u
+#define ADDED_A_SEGMENT 8
+
+// Of the camera.
 #define DIM_FILM 0
-#define DIM_BSDF 0         // within a segment: direction
+#define DIM_LENS (ADDED_DIMENSION + 0) // the point on the lens; of cameras that have one
+
+// Of a segment.
+#define DIM_BSDF 0         // direction
 #define DIM_LOBE 1         // .x which lobe, .y Russian roulette
 #define DIM_LIGHT 2        // point on the light
 #define DIM_EMITTER 3      // which emitter: .x row, .y alias
 #define DIM_TRIANGLE 4     // which triangle: .x row, .y alias
 #define DIMS_A_SEGMENT 5
+
+// The key of a dimension in a path's segment d, which counts from 1; 0: an added dimension of the camera. Keys are
+// distinct up to 2^28 segments. Those of added dimensions have the highest bit set. The other bits count them in steps
+// of 2^32 / golden ratio: numbers of two keys that differ in the highest bit alone are correlated, because multiplying
+// carries bits upwards only.
+static uints segment_dimension(uints d, uint dimension) {
+    if (dimension & ADDED_DIMENSION)
+        return ADDED_DIMENSION | (d * (uint)ADDED_A_SEGMENT + (dimension - ADDED_DIMENSION + 1u)) * 0x9e3779b9u;
+    return 1u + (d - 1u) * (uint)DIMS_A_SEGMENT + dimension;
+}
 
 typedef struct {
     uints pixel, sample;   // y * width + x; index of the sample within its pixel

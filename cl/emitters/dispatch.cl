@@ -28,8 +28,7 @@ static mask emitter_lanes(uints kind, uint wanted, int kinds, mask active) {
 
 // A direction from `from` to the emitters `id`, by random numbers u in [0, 1) and random words `bits`.
 static LightSample emitter_sample(const Scene *scene, uints id, ReferencePoint from, v2 u, u2 bits, mask active) {
-    v3 zero = v3_all((real)(0));
-    LightSample sample = light_sample_of(zero, (real)(0), zero, (real)(0), zero, NO_LANES);
+    LightSample sample = no_light_sample();
     uints kind = emitter_kind(scene, id);
 #define SAMPLE_EMITTER(name, traits) \
     if (OPAL_HAS_emitter_##name) { \

@@ -41,6 +41,11 @@ static LightSample light_sample_of(v3 d, real distance, v3 radiance, real invers
     return s;
 }
 
+static LightSample no_light_sample() {
+    v3 zero = v3_all((real)(0));
+    return light_sample_of(zero, (real)(0), zero, (real)(0), zero, NO_LANES);
+}
+
 static LightSample light_sample_pick(mask m, LightSample yes, LightSample no) {
     LightSample s = {v3_pick(m, yes.d, no.d), m ? yes.distance : no.distance, v3_pick(m, yes.radiance, no.radiance),
                      m ? yes.inverse_pdf : no.inverse_pdf, v3_pick(m, yes.end, no.end), m ? yes.active : no.active,

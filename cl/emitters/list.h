@@ -1,5 +1,5 @@
 // The emitters: a row, a list of parameters and a record here, one file cl/emitters/NAME.cl and one file
-// host/flatten/emitters/NAME.cpp each.
+// host/flatten/emitter_NAME.cpp each.
 #ifndef OPAL_EMITTER_LIST_H
 #define OPAL_EMITTER_LIST_H
 

@@ -7,6 +7,7 @@
 #include "emitters/area_light.cl"
 #include "emitters/interface.cl"
 #include "scene.cl"
+#include "shapes/triangle.cl"
 #include "surface.cl"
 
 static LightSample emitter_mesh_sample(const Scene *scene, uints id, ReferencePoint from, v2 u, u2 bits) {
@@ -31,7 +32,7 @@ static v3 emitter_mesh_radiance(const Scene *scene, uints id, v3 d, Surface s) {
 }
 
 static real emitter_mesh_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, Surface s) {
-    uints place = s.triangle - GATHER(uints, scene->emitters, id, .u.of_mesh.first_triangle);
+    uints place = s.primitive - GATHER(uints, scene->emitters, id, .u.of_mesh.first_triangle);
     // In other lanes `place` may be anything.
     uints row = uints_pick(to_mask(place < GATHER(uints, scene->emitters, id, .count)),
                            GATHER(uints, scene->emitters, id, .first) + place, (uints)(0));

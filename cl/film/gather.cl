@@ -1,5 +1,5 @@
 // gather: the kernel that adds a pass's samples to the film.
-#include "camera.cl"
+#include "cameras/interface.cl"
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "core/rng.cl"

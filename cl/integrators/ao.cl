@@ -6,6 +6,7 @@
 #include "core/warp.cl"
 #include "integrators/steps.cl"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "surface.cl"
 #include "trace/trace.cl"
 

@@ -9,6 +9,7 @@
 #include "emitters/dispatch.cl"
 #include "integrators/steps.cl"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "shared/types.h"
 #include "surface.cl"
 
@@ -34,8 +35,8 @@ static mask direct_lighting_step(const Scene *scene, Path *path, Hit hit, mask a
         path->throughput = v3_scale(path->throughput, discrete ? (real)(1) : 1 / light.probability);
     }
     if (CHOSEN(scene, lighting, bsdf)) by_light = NO_LANES;
-    DirectLight direct = sample_direct_light(scene, path, s, by_light);
-    active = scatter(scene, path, s, by_bsdf);
+    DirectLight direct;
+    active = interact(scene, path, s, by_light, by_bsdf, &direct);
     path->radiance = v3_add(path->radiance, visible_light(scene, direct));
     return active;
 }

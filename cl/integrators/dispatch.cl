@@ -1,14 +1,8 @@
-// dispatch: one step of the chosen integrator (integrators/NAME.cl for each choice of the axis `integrator`).
+// dispatch: one step of the chosen integrator (integrators/NAME.cl for each row of list.h).
 //   mask NAME_step(scene, path, hit, active)   adds what the path finds at `hit` to its radiance and sets its next ray;
 //                                              returns the lanes whose path goes on
 #include "core/lanes.cl"
-#include "integrators/ao.cl"
-#include "integrators/direct_lighting.cl"
-#include "integrators/normals.cl"
-#include "integrators/path.cl"
-#include "integrators/simple.cl"
-#include "integrators/steps.cl"
-#include "integrators/whitted.cl"
+#include "integrators/*.cl"
 #include "scene.cl"
 #include "shared/strategy.h"
 

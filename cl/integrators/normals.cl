@@ -2,6 +2,7 @@
 #include "core/lanes.cl"
 #include "integrators/steps.cl"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "surface.cl"
 
 static mask normals_step(const Scene *scene, Path *path, Hit hit, mask active) {

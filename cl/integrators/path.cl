@@ -7,6 +7,7 @@
 #include "emitters/dispatch.cl"
 #include "integrators/steps.cl"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "surface.cl"
 
 static mask path_step(const Scene *scene, Path *path, Hit hit, mask active) {
@@ -19,16 +20,14 @@ static mask path_step(const Scene *scene, Path *path, Hit hit, mask active) {
     active = on_surface & to_mask(path->depth < scene->settings->max_depth);
     if (!ANY(active)) return active;
 
-    // Light that is sampled
+    // Light that is sampled, and the next segment
     bsdf_open(scene, &s, active);
     mask by_light = CHOSEN(scene, lighting, bsdf) ? NO_LANES : active & !bsdf_is_discrete(scene, s.bsdf);
-    DirectLight light = sample_direct_light(scene, path, s, by_light);
-
-    // The next segment
     real u = path_draw(scene, path, DIM_LOBE).y;
-    active = scatter(scene, path, s, active);
+    DirectLight direct;
+    active = interact(scene, path, s, by_light, active, &direct);
     active = roulette(scene, path, active, u);
 
-    add_radiance(scene, path, visible_light(scene, light));
+    add_radiance(scene, path, visible_light(scene, direct));
     return active;
 }

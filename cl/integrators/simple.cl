@@ -5,6 +5,7 @@
 #include "core/math.cl"
 #include "integrators/steps.cl"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "surface.cl"
 #include "trace/trace.cl"
 

@@ -27,14 +27,11 @@ typedef struct {
 } Path;
 
 // Random numbers and words `dimension` of the path's present segment.
-static uints path_dimension(const Path *path, uint dimension) {
-    return 1u + (path->depth - 1u) * (uint)DIMS_A_SEGMENT + dimension;
-}
 static v2 path_draw(const Scene *scene, const Path *path, uint dimension) {
-    return draw(scene, path->sampler, path_dimension(path, dimension));
+    return draw(scene, path->sampler, segment_dimension(path->depth, dimension));
 }
 static u2 path_draw_bits(const Scene *scene, const Path *path, uint dimension) {
-    return draw_bits(scene, path->sampler, path_dimension(path, dimension));
+    return draw_bits(scene, path->sampler, segment_dimension(path->depth, dimension));
 }
 
 // Adds light to the path's radiance. Without roulette a path may have thousands of segments, and a plain sum would lose
@@ -77,6 +74,8 @@ static v3 light_met(const Scene *scene, const Path *path, Surface s, mask hit, m
 // Samples one direction to one emitter as the light of surface s, before its BSDF is asked. Sets *wo to the direction
 // in the surface's frame. inverse_pdf includes the choice of the emitter.
 static LightSample sample_light(const Scene *scene, const Path *path, Surface s, mask active, v3 *wo) {
+    *wo = s.wi;
+    if (EMITTER_KINDS == 0 || !ANY(active)) return no_light_sample();
     ReferencePoint from = reference_point(s);
     EmitterChoice choice = emitter_choose(scene, from, path_draw_bits(scene, path, DIM_EMITTER));
     LightSample light = emitter_sample(scene, choice.id, from, path_draw(scene, path, DIM_LIGHT),
@@ -94,13 +93,7 @@ typedef struct {
     mask active;     // the lanes that have such a sample
 } DirectLight;
 
-static DirectLight no_direct_light() {
-    v3 zero = v3_all((real)(0));
-    DirectLight none = {zero, {zero, zero, (real)(0), (real)(0)}, NO_LANES};
-    return none;
-}
-
-// Completes a light sample of direction wo by what the BSDF answers.
+// Completes a light sample by what the BSDF answers for its direction wo, local.
 static DirectLight direct_light(const Scene *scene, const Path *path, Surface s, LightSample light, v3 wo,
                                 BsdfResponse bsdf) {
     real inverse_pdf = light.inverse_pdf;
@@ -113,17 +106,6 @@ static DirectLight direct_light(const Scene *scene, const Path *path, Surface s,
     mask active = light.active & ((v3_largest(light_in) > 0) | !is_finite(light_in));
     DirectLight direct = {v3_mul(path->throughput, light_in), shadow_ray(s, light), active};
     return direct;
-}
-
-// Direct light of surface s by one light sample. Visibility is tested later, by visible_light, so that a processor
-// works at this and at scatter at the same time.
-static DirectLight sample_direct_light(const Scene *scene, const Path *path, Surface s, mask active) {
-    if (EMITTER_KINDS == 0 || !ANY(active)) return no_direct_light();
-    v3 wo;
-    LightSample light = sample_light(scene, path, s, active, &wo);
-    if (!ANY(light.active)) return no_direct_light();
-    v2 none = v2_of((real)(0), (real)(0));
-    return direct_light(scene, path, s, light, wo, bsdf_respond(scene, s, wo, light.active, none, (real)(0), NO_LANES));
 }
 
 // The radiance of direct light where nothing blocks its shadow ray, else 0.
@@ -143,10 +125,8 @@ static v3 visible_light(const Scene *scene, DirectLight light) {
 // paths would go on for ever.
 #define THROUGHPUT_LEAST R(1.1754944e-38)
 
-// Draws the path's next segment by the BSDF. Returns the active lanes whose path still carries something.
-static mask scatter(const Scene *scene, Path *path, Surface s, mask active) {
-    v2 lobe = path_draw(scene, path, DIM_LOBE);
-    BsdfSample sample = bsdf_sample(scene, s, path_draw(scene, path, DIM_BSDF), lobe.x, active);
+// Sets the path's next segment to a sample of the BSDF. Returns the active lanes whose path still carries something.
+static mask scatter(const Scene *scene, Path *path, Surface s, BsdfSample sample, mask active) {
     mask broken = active & !is_finite(sample.weight);
     if (ANY(broken)) { // the path ends, and the film counts it
         path->radiance = v3_pick(broken, sample.weight, path->radiance);
@@ -159,7 +139,10 @@ static mask scatter(const Scene *scene, Path *path, Surface s, mask active) {
     path->ray.tmin = 0;
     path->ray.tmax = FAR;
     path->throughput = v3_mul(path->throughput, sample.weight);
-    path->eta = path->eta * sample.eta;
+    if (TRANSMITTING_BSDF_KINDS > 0) { // radiance is scaled where light enters another medium (Veach 1997, section 5.2)
+        path->throughput = v3_scale(path->throughput, 1 / square(sample.eta));
+        path->eta = path->eta * sample.eta;
+    }
     path->specular = sample.discrete;
     if (CHOSEN(scene, lighting, mis)) {
         path->pdf = sample.pdf;
@@ -167,6 +150,19 @@ static mask scatter(const Scene *scene, Path *path, Surface s, mask active) {
     }
     path->depth = path->depth + 1u;
     return active & (v3_largest(path->throughput) >= THROUGHPUT_LEAST);
+}
+
+// What happens to the path at surface s: in the lanes of by_light a direction to a light is sampled, in those of by_bsdf
+// the next segment. The BSDF is asked once for both. Sets *direct, whose visibility is tested later, by visible_light, so
+// that a processor works at this and at the next segment at the same time. Returns the lanes of by_bsdf whose path still
+// carries something.
+static mask interact(const Scene *scene, Path *path, Surface s, mask by_light, mask by_bsdf, DirectLight *direct) {
+    v3 wo;
+    LightSample light = sample_light(scene, path, s, by_light, &wo);
+    BsdfResponse bsdf = bsdf_respond(scene, s, wo, light.active, path_draw(scene, path, DIM_BSDF),
+                                     path_draw(scene, path, DIM_LOBE).x, by_bsdf);
+    *direct = direct_light(scene, path, s, light, wo, bsdf);
+    return scatter(scene, path, s, bsdf.sample, by_bsdf);
 }
 
 // The greatest probability to survive. It is below 1, because total reflection can hold a path in glass for ever, and

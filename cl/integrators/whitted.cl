@@ -6,6 +6,7 @@
 #include "emitters/dispatch.cl"
 #include "integrators/steps.cl"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "surface.cl"
 
 #define WHITTED_SURVIVAL R(0.95)
@@ -19,11 +20,10 @@ static mask whitted_step(const Scene *scene, Path *path, Hit hit, mask active) {
     active = on_surface & to_mask(path->depth < scene->settings->max_depth);
     bsdf_open(scene, &s, active);
     mask specular = active & bsdf_is_discrete(scene, s.bsdf);
-    DirectLight light = sample_direct_light(scene, path, s, active & !specular);
-    path->radiance = v3_add(path->radiance, visible_light(scene, light));
-    if (!ANY(specular)) return specular;
-    real u = path_draw(scene, path, DIM_LOBE).y;
-    Choice survives = choose((real)(WHITTED_SURVIVAL), u);
-    path->throughput = v3_scale(path->throughput, 1 / survives.probability);
-    return scatter(scene, path, s, specular) & survives.first;
+    Choice survives = choose((real)(WHITTED_SURVIVAL), path_draw(scene, path, DIM_LOBE).y);
+    path->throughput = v3_scale(path->throughput, specular ? 1 / survives.probability : (real)(1));
+    DirectLight direct;
+    mask followed = interact(scene, path, s, active & !specular, specular, &direct);
+    path->radiance = v3_add(path->radiance, visible_light(scene, direct));
+    return followed & survives.first;
 }

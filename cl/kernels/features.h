@@ -5,15 +5,21 @@
 #define OPAL_FEATURES_H
 
 #include "bsdfs/list.h"
+#include "cameras/list.h"
 #include "emitters/list.h"
+#include "shapes/list.h"
 
 #define OPAL_BSDF_FEATURE(name, traits) OPAL_FEATURE_ROW(bsdf_##name, "bsdf_" #name)
 #define OPAL_EMITTER_FEATURE(name, traits) OPAL_FEATURE_ROW(emitter_##name, "emitter_" #name)
+#define OPAL_SHAPE_FEATURE(name, Block) OPAL_FEATURE_ROW(shape_##name, "shape_" #name)
+#define OPAL_CAMERA_FEATURE(name, record, traits) OPAL_FEATURE_ROW(camera_##name, "camera_" #name)
 
 // Define OPAL_FEATURE_ROW(name, shown) and expand this; `shown` is what `opal inspect` calls the feature.
 #define OPAL_FEATURES \
     OPAL_ALL_BSDFS(OPAL_BSDF_FEATURE) \
     OPAL_EMITTERS(OPAL_EMITTER_FEATURE) \
+    OPAL_SHAPES(OPAL_SHAPE_FEATURE) \
+    OPAL_CAMERAS(OPAL_CAMERA_FEATURE) \
     /* several emitters, one of which is chosen; else emitter 0 is meant */ \
     OPAL_FEATURE_ROW(many_emitters, "many_emitters") \
     /* some mesh interpolates vertex normals */ \

@@ -16,6 +16,7 @@
 #include "kernels/sample_columns.cl"
 #include "kernels/probe_list.h"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "shared/types.h"
 #include "surface.cl"
 #include "trace/trace.cl"
@@ -74,16 +75,12 @@ kernel void warp_pdf(int which, float parameter, global const float *points, glo
 // A surface of a mesh in the plane z = 0, seen from wi, at uv = 0.
 static Surface flat_surface(const Scene *scene, uint mesh, float wi_x, float wi_y, float wi_z) {
     real zero = 0, one = 1;
-    Surface s;
-    s.p = v3_all(zero);
-    s.t = s.u = s.v = s.ray_offset = zero;
-    s.triangle = (uints)(0);
+    Surface s = no_surface();
     s.frame.s = v3_of(one, zero, zero);
     s.frame.t = v3_of(zero, one, zero);
     s.frame.n = s.normal = v3_of(zero, zero, one);
     s.wi = v3_of((real)(wi_x), (real)(wi_y), (real)(wi_z));
     s.bsdf = (uints)(scene->meshes[mesh].bsdf);
-    s.emitter = (uints)(OPAL_NONE);
     bsdf_open(scene, &s, ALL_LANES);
     return s;
 }
@@ -162,7 +159,7 @@ kernel void trace(SCENE_PARAMETERS, global const float *rays, global float *out,
     put(out, HIT_T, stride, base, active ? s.t : hit.t);
     put(out, HIT_U, stride, base, s.u);
     put(out, HIT_V, stride, base, s.v);
-    put_uints(out, HIT_SLOT, stride, base, hit.slot);
+    put_uints(out, HIT_SLOT, stride, base, hit.place);
     put(out, HIT_ANY, stride, base, any_hit(&scene, ray, ALL_LANES) ? (real)(1) : (real)(0));
     put_uints(out, HIT_EMITTER, stride, base, uints_pick(met, id, (uints)(OPAL_NONE)));
     put_v3(out, HIT_RADIANCE_R, stride, base, radiance);

@@ -2,7 +2,8 @@
 //
 // Rays and hits are columns (sample_columns.cl) of `stride` floats, a multiple of 16; kernels/rays_list.h names the
 // columns.
-#include "camera.cl"
+#include "cameras/dispatch.cl"
+#include "cameras/interface.cl"
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "core/rng.cl"
@@ -13,6 +14,7 @@
 #include "kernels/sample_columns.cl"
 #include "kernels/rays_list.h"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "shared/counters.h"
 #include "shared/types.h"
 #include "surface.cl"
@@ -38,7 +40,7 @@ static Ray tiled_camera_ray(const Scene *scene, Sampler sampler, uints i) {
     uints tile = i / (uint)(RAYS_TILE * RAYS_TILE), row = tile / columns;
     uints x = (tile - row * columns) * RAYS_TILE + i % (uint)(RAYS_TILE);
     uints y = row * RAYS_TILE + i / (uint)(RAYS_TILE) % (uint)(RAYS_TILE);
-    return camera_ray(scene, x, y, draw(scene, sampler, (uints)(DIM_FILM)));
+    return camera_ray(scene, x, y, film_offset(scene, sampler), lens_numbers(scene, sampler));
 }
 
 // A cosine-distributed ray into the hemisphere around `normal`.
@@ -113,12 +115,11 @@ kernel void closest_hits(SCENE_PARAMETERS, global const float *rays, global floa
         Ray ray = get_ray(rays, stride, base);
         Hit hit = closest_hit(&scene, ray, active);
         mask active_hit = is_hit(hit) & active;
-        uints id = triangle_id(&scene, uints_pick(active_hit, hit.slot, (uints)(0)));
         Surface s = surface_at(&scene, ray, hit, active_hit);
         put(hits, TRACE_T, stride, base, active_hit ? s.t : hit.t);
         put(hits, TRACE_U, stride, base, s.u);
         put(hits, TRACE_V, stride, base, s.v);
-        put_uints(hits, TRACE_TRIANGLE, stride, base, uints_pick(active_hit, id, (uints)(OPAL_NONE)));
+        put_uints(hits, TRACE_TRIANGLE, stride, base, uints_pick(active_hit, s.primitive, (uints)(OPAL_NONE)));
     }
     put_counters(tests, counters);
 }

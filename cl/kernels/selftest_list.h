@@ -3,24 +3,29 @@
 #define OPAL_SELFTEST_LIST_H
 
 #include "bsdfs/list.h"
+#include "cameras/list.h"
 #include "emitters/list.h"
+#include "shapes/list.h"
 #include "shared/types.h"
 
 // Records whose sizes, and members whose offsets, must be the same on both sides.
 #define OPAL_RECORDS(RECORD) \
     RECORD(BvhNode) RECORD(TriangleBlock) RECORD(Triangle) RECORD(FaceRecord) RECORD(FaceRange) RECORD(MeshRecord) \
-    RECORD(Settings) RECORD(EmitterRecord) RECORD(LightTriangle) OPAL_EMITTERS(OPAL_EMITTER_SIZE)
+    RECORD(Settings) RECORD(CameraRecord) RECORD(EmitterRecord) RECORD(LightTriangle) \
+    OPAL_EMITTERS(OPAL_EMITTER_SIZE)
 #define OPAL_EMITTER_SIZE(name, traits) OPAL_SIZE(emitter_##name##_record)
 #define OPAL_MEMBERS(MEMBER) \
     MEMBER(BvhNode, hi) MEMBER(BvhNode, child) MEMBER(TriangleBlock, id) MEMBER(Triangle, mesh) \
-    MEMBER(FaceRecord, corner) MEMBER(MeshRecord, emitter) MEMBER(Settings, camera_forward) \
-    MEMBER(Settings, far_clip) MEMBER(Settings, face_list_slot) MEMBER(Settings, rr_prob) \
+    MEMBER(FaceRecord, corner) MEMBER(MeshRecord, emitter) MEMBER(CameraRecord, forward) \
+    MEMBER(CameraRecord, own) MEMBER(Settings, face_list_slot) MEMBER(Settings, rr_prob) \
     MEMBER(Settings, light_energy) MEMBER(Settings, filter_c) MEMBER(Settings, choices) \
     MEMBER(EmitterRecord, probability) MEMBER(EmitterRecord, other) MEMBER(EmitterRecord, u) \
     MEMBER(LightTriangle, inverse_pdf)
 
 // Says the layout of all records by the statements OPAL_SIZE(T) and OPAL_OFFSET(T, member), which either side defines.
-#define OPAL_LAYOUT OPAL_RECORDS(OPAL_SIZE) OPAL_MEMBERS(OPAL_OFFSET) OPAL_ALL_BSDFS(OPAL_BSDF_LAYOUT)
+#define OPAL_LAYOUT \
+    OPAL_RECORDS(OPAL_SIZE) OPAL_MEMBERS(OPAL_OFFSET) OPAL_ALL_BSDFS(OPAL_BSDF_LAYOUT) OPAL_CAMERAS(OPAL_CAMERA_LAYOUT)
+#define OPAL_CAMERA_LAYOUT(name, record, traits) OPAL_SIZE(record)
 #define OPAL_BSDF_LAYOUT(name, traits) \
     { \
         typedef bsdf_##name##_record Record; \

@@ -5,23 +5,35 @@
 #ifndef OPAL_STRATEGY_H
 #define OPAL_STRATEGY_H
 
-#define OPAL_AXES(AXIS) \
-    AXIS(integrator, "what the image estimates") \
-    AXIS(lighting, "how light is found: by BSDF sampling, by emitter sampling, or by both with MIS") \
-    AXIS(mis, "how MIS weighs its two samples (Veach 1997, section 9.2)") \
-    AXIS(hemisphere, "how a diffuse surface draws directions") \
-    AXIS(emitter_choice, "how an emitter is chosen for light sampling") \
-    AXIS(triangle_choice, "how a triangle is chosen within a mesh light") \
-    AXIS(rr, "Russian roulette: how the probability to survive is found") \
-    AXIS(sampler, "where the random numbers come from")
+#include "integrators/list.h"
 
-#define OPAL_CHOICES_integrator(CHOICE) \
-    CHOICE(integrator, normals, "shading normals as colours") \
-    CHOICE(integrator, ao, "ambient occlusion, unbounded") \
-    CHOICE(integrator, simple, "one point light, no bounces") \
-    CHOICE(integrator, whitted, "direct light by emitter sampling, specular surfaces followed") \
-    CHOICE(integrator, direct_lighting, "one bounce of direct light") \
-    CHOICE(integrator, path, "full path tracing")
+// What a strategy and a scene must have for an axis to matter, beside an integrator that reads the axis. The host finds
+// it in strategies/combinations.cpp.
+enum {
+    OPAL_NEEDS_MIS = 1,              // both kinds of samples
+    OPAL_NEEDS_EMITTER_SAMPLES = 2,
+    OPAL_NEEDS_MANY_EMITTERS = 4,
+    OPAL_NEEDS_MESH_LIGHTS = 8,      // a light of several triangles
+    OPAL_NEEDS_DIFFUSE_SAMPLES = 16, // BSDF samples of diffuse surfaces, or directions that the integrator draws
+    OPAL_NEEDS_ROULETTE = 32         // paths that are long enough for it
+};
+
+// AXIS(name, needs, help); its choices are the rows of OPAL_CHOICES_name.
+#define OPAL_AXES(AXIS) \
+    AXIS(integrator, 0, "what the image estimates") \
+    AXIS(lighting, 0, "how light is found: by BSDF sampling, by emitter sampling, or by both with MIS") \
+    AXIS(mis, OPAL_NEEDS_MIS, "how MIS weighs its two samples (Veach 1997, section 9.2)") \
+    AXIS(hemisphere, OPAL_NEEDS_DIFFUSE_SAMPLES, "how a diffuse surface draws directions") \
+    AXIS(emitter_choice, OPAL_NEEDS_EMITTER_SAMPLES | OPAL_NEEDS_MANY_EMITTERS, \
+         "how an emitter is chosen for light sampling") \
+    AXIS(triangle_choice, OPAL_NEEDS_EMITTER_SAMPLES | OPAL_NEEDS_MESH_LIGHTS, \
+         "how a triangle is chosen within a mesh light") \
+    AXIS(rr, OPAL_NEEDS_ROULETTE, "Russian roulette: how the probability to survive is found") \
+    AXIS(sampler, 0, "where the random numbers come from")
+
+// CHOICE(axis, name, help).
+#define OPAL_INTEGRATOR_CHOICE(CHOICE, name, asks, axes, help) CHOICE(integrator, name, help)
+#define OPAL_CHOICES_integrator(CHOICE) OPAL_INTEGRATORS(OPAL_INTEGRATOR_CHOICE, CHOICE)
 
 #define OPAL_CHOICES_lighting(CHOICE) \
     CHOICE(lighting, bsdf, "follow BSDF samples until they hit a light") \
@@ -57,17 +69,11 @@
     CHOICE(sampler, stratified, "jittered strata, shuffled for each dimension") \
     CHOICE(sampler, sobol, "Owen-scrambled Sobol pairs (Burley 2020)")
 
-#define OPAL_AXIS_ENUM(axis, help) AXIS_##axis,
+#define OPAL_AXIS_ENUM(axis, needs, help) AXIS_##axis,
 enum { OPAL_AXES(OPAL_AXIS_ENUM) AXIS_COUNT };
 
 #define OPAL_CHOICE_ENUM(axis, choice, help) CHOICE_##axis##_##choice,
-enum { OPAL_CHOICES_integrator(OPAL_CHOICE_ENUM) };
-enum { OPAL_CHOICES_lighting(OPAL_CHOICE_ENUM) };
-enum { OPAL_CHOICES_mis(OPAL_CHOICE_ENUM) };
-enum { OPAL_CHOICES_hemisphere(OPAL_CHOICE_ENUM) };
-enum { OPAL_CHOICES_emitter_choice(OPAL_CHOICE_ENUM) };
-enum { OPAL_CHOICES_triangle_choice(OPAL_CHOICE_ENUM) };
-enum { OPAL_CHOICES_rr(OPAL_CHOICE_ENUM) };
-enum { OPAL_CHOICES_sampler(OPAL_CHOICE_ENUM) };
+#define OPAL_CHOICES_ENUM(axis, needs, help) enum { OPAL_CHOICES_##axis(OPAL_CHOICE_ENUM) };
+OPAL_AXES(OPAL_CHOICES_ENUM)
 
 #endif

@@ -1,4 +1,4 @@
-// The records that host and device share, apart from BSDFs, textures and emitters (bsdfs/list.h and so on).
+// The records that host and device share, apart from shapes, BSDFs, textures and emitters (shapes/list.h and so on).
 #ifndef OPAL_TYPES_H
 #define OPAL_TYPES_H
 
@@ -10,37 +10,28 @@ namespace opal {
 #endif
 
 #define OPAL_NONE 0xffffffffu        // no emitter, no normal, no hit, no depth limit
-#define OPAL_LEAF 0x80000000u        // a child that is a triangle block
 #define OPAL_LEVELS 24               // most levels of a tree, its root included
-#define OPAL_WIDTH 8                 // children of a node, triangles of a block
+#define OPAL_WIDTH 8                 // children of a node, primitives of a block
 #define OPAL_FACE_LIST_TRIANGLES 48  // most triangles of the face list, which is tested beside the tree ...
 #define OPAL_FACE_LIST_VERTICES 96   // ... and its most distinct vertices
 
+// A child of a node that is a leaf: OPAL_LEAF | shape << OPAL_SHAPE_SHIFT | index in that shape's table of blocks. All
+// primitives of a leaf are of one shape (SHAPE_*, shapes/list.h).
+#define OPAL_LEAF 0x80000000u
+#define OPAL_SHAPE_SHIFT 28
+#define OPAL_SHAPE_BITS 7u
+#define OPAL_BLOCK_BITS 0x0fffffffu
+
 // A node of the 8-wide tree: its children's boxes, one axis and side a row, and the children themselves: the index of a
-// node, or OPAL_LEAF | index of a block. Unused children come last; they are OPAL_NONE and have lo = +inf, hi = -inf,
-// which a slab test misses as long as it picks near and far by the direction's signs (sorting the two distances would
-// hit). The first node is the root.
+// node, or a leaf. Unused children come last; they are OPAL_NONE and have lo = +inf, hi = -inf, which a slab test
+// misses as long as it picks near and far by the direction's signs (sorting the two distances would hit). The first
+// node is the root.
 typedef struct {
     float lo[3][OPAL_WIDTH];
     float hi[3][OPAL_WIDTH];
     uint child[OPAL_WIDTH];
 } BvhNode;
 OPAL_SIZE_CHECK(BvhNode, 224);
-
-// Eight triangles: vertex[corner][axis][place]. Unused places repeat one point, which no ray hits, and have id
-// OPAL_NONE.
-typedef struct {
-    float vertex[3][3][OPAL_WIDTH];
-    uint id[OPAL_WIDTH];  // index into the Triangle array
-} TriangleBlock;
-OPAL_SIZE_CHECK(TriangleBlock, 320);
-
-// A triangle's attributes for shading, beside its vertices.
-typedef struct {
-    uint normal[3];       // of each corner, an index into the normals (3 floats each); OPAL_NONE: use the geometric one
-    uint mesh;
-} Triangle;
-OPAL_SIZE_CHECK(Triangle, 16);
 
 // A face of the face list: a triangle A B C, or a plane convex quadrilateral A B D C that stands for the triangles A B
 // C and D C B. Face i has the slot face_list_slot + 2 i, and for D C B the next one.
@@ -68,10 +59,6 @@ enum { OPAL_FILTERS(OPAL_FILTER_ENUM) FILTER_COUNT };
 
 // All numbers of a scene that are no table. Positions are in the flattened scene's units.
 typedef struct {
-    float camera_origin[3];
-    float camera_left[3], camera_up[3], camera_forward[3]; // world-space columns of toWorld, without translation
-    float tan_half_x, tan_half_y;   // film half extents at distance 1
-    float near_clip, far_clip;      // along camera_forward, in camera space times FlatScene::scale
     uint width, height;             // pixels
     uint spp;                       // samples of a pixel in the whole render (the strata of --sampler stratified)
     uint seed;
@@ -92,7 +79,7 @@ typedef struct {
     float filter_b, filter_c;       // mitchell
     int choices[AXIS_COUNT];        // CHOICE_* of each axis; read by the general kernel only
 } Settings;
-OPAL_SIZE_CHECK(Settings, 200);
+OPAL_SIZE_CHECK(Settings, 104 + 4 * AXIS_COUNT);
 
 #ifdef __cplusplus
 }

@@ -3,9 +3,10 @@
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "scene.cl"
+#include "shapes/edge.cl"
+#include "shapes/list.h"
 #include "shared/types.h"
 #include "trace/rays.cl"
-#include "trace/edge.cl"
 
 // The face list's vertices as all lanes see them, moved to the ray's origin and sheared.
 typedef struct { real x[OPAL_FACE_LIST_VERTICES], y[OPAL_FACE_LIST_VERTICES]; } FaceView;
@@ -21,7 +22,7 @@ static void view_faces(const Scene *scene, Ray ray, uint count, FaceView *view) 
     for (uint i = 0; i < count; i++) {
         global const float *vertex = scene->face_vertices + 3 * i;
         real1 x = vertex[0], y = vertex[1], z = vertex[2];
-        if (OPAL_HAS_tree) { // bit for bit as intersect_block sees a vertex, or rays leak between tree and face list
+        if (OPAL_HAS_tree) { // bit for bit as intersect_triangle sees a vertex, or rays leak between tree and face list
             v3 d = v3_sub(v3_of((real)(x), (real)(y), (real)(z)), ray.o);
             real along = s.x ? d.x : s.y ? d.y : d.z;
             view->x[i] = mul_add(-s.shear_x, along, s.x ? d.y : s.y ? d.z : d.x);
@@ -91,7 +92,7 @@ static Hit faces_closest(const Scene *scene, Ray ray) {
     if (i < faces) try_face(scene, &view, ray, i, &best);
     prefer(&best, ALL_LANES, other.distance, other.determinant, other.triangle);
     mask found = to_mask(best.triangle != OPAL_NONE);
-    Hit hit = {best.distance / best.determinant, (real)(0), (real)(0),
+    Hit hit = {best.distance / best.determinant, (real)(0), (real)(0), (uints)(SHAPE_triangle),
                uints_pick(found, scene->settings->face_list_slot + best.triangle, (uints)(OPAL_NONE))};
     return hit;
 }

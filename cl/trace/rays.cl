@@ -1,8 +1,9 @@
 // rays: the set-up of a ray for both walks of the tree (one_lane/, many_lanes/).
 #include "core/lanes.cl"
+#include "shapes/dispatch.cl"
 #include "shared/types.h"
 
-// The axis kz of the largest component of d, and the shear that turns d into that axis (triangle.cl).
+// The axis kz of the largest component of d, and the shear that turns d into that axis (shapes/edge.cl).
 typedef struct {
     mask x, y;                      // kz = 0, kz = 1; else 2
     real shear_x, shear_y, scale_z; // d[kx] / d[kz], d[ky] / d[kz], 1 / d[kz], with kx = kz + 1, ky = kz + 2 mod 3
@@ -43,24 +44,19 @@ static real safe_inverse(real d) {
 #define UPPER_PLANES(axis) (OPAL_WIDTH * (3 + (axis)))
 #define OPPOSITE_PLANES(axis, planes) (LOWER_PLANES(axis) + UPPER_PLANES(axis) - (planes))
 
-// One ray as a walk of the tree needs it.
-typedef struct {
-    real1 o[3];                           // origin
-    real1 inverse[3], widened[3];         // 1 / d, finite; the same times BOX_WIDENING
-    uint near[3], far[3];                 // offsets of each axis' near and far planes, by the direction's sign
-    uint kx, ky, kz;                      // axes, as in Shear
-    real1 sheared_o[3];                   // o[kx], o[ky], o[kz]
-    real1 shear_x, shear_y, scale_z;
-    real1 tmin, tmax;
-} LaneRay;
-
 // A key orders a node's children by where a ray enters them: the bits of that distance, which compare as the (positive)
 // distance does, with the child's place in the last three bits. NO_KEY: the ray misses the child.
 #define KEY_PLACE_BITS 3
 #define KEY_PLACE 7
 
-// The nearest hits of all lanes.
+// The nearest hits of all lanes. shape: unset in kernels of one shape
 typedef struct {
     real1 t[LANES], u[LANES], v[LANES];
-    uint slot[LANES];
+    uint shape[LANES], place[LANES];
 } LaneHits;
+
+// Sets the hit of one lane but for t, u and v: the primitive in `place` of the leaf `child`.
+static void set_primitive(LaneHits *hits, int lane, uint child, uint place) {
+    if (SHAPE_KINDS > 1) hits->shape[lane] = leaf_shape(child);
+    hits->place[lane] = leaf_block(child) * OPAL_WIDTH + place;
+}

@@ -1,8 +1,9 @@
 // trace: closest and any hit of each lane. The faces of the face list are tested against all lanes at once (faces.cl),
-// the other triangles are in a tree, which each lane walks alone: by one_lane/walk.cl where the kernel carries one
+// everything else is in a tree, which each lane walks alone: by one_lane/walk.cl where the kernel carries one
 // lane, as GPUs run it, else by many_lanes/walk.cl.
 #include "core/lanes.cl"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "shared/types.h"
 #include "trace/faces.cl"
 #include "trace/rays.cl"
@@ -14,7 +15,7 @@
 
 // The nearest hit of each active lane.
 static Hit closest_hit(const Scene *scene, Ray ray, mask active) {
-    Hit hit = {ray.tmax, (real)(0), (real)(0), (uints)(OPAL_NONE)};
+    Hit hit = no_hit(ray.tmax);
     if (OPAL_HAS_face_list) hit = faces_closest(scene, ray);
     if (!OPAL_HAS_tree) return hit;
     ray.tmax = hit.t;
@@ -22,9 +23,11 @@ static Hit closest_hit(const Scene *scene, Ray ray, mask active) {
     prepare_rays(&rays, scene, ray, active);
     if (rays.walking == 0) return hit;
     LaneHits hits;
-    STORE(hit.t, hits.t); STORE(hit.u, hits.u); STORE(hit.v, hits.v); STORE(hit.slot, hits.slot);
+    STORE(hit.t, hits.t); STORE(hit.u, hits.u); STORE(hit.v, hits.v); STORE(hit.place, hits.place);
+    if (SHAPE_KINDS > 1) STORE(hit.shape, hits.shape);
     walk_closest(scene, &rays, &hits);
-    Hit nearest = {LOAD(real, hits.t), LOAD(real, hits.u), LOAD(real, hits.v), LOAD(uints, hits.slot)};
+    Hit nearest = {LOAD(real, hits.t), LOAD(real, hits.u), LOAD(real, hits.v), hit.shape, LOAD(uints, hits.place)};
+    if (SHAPE_KINDS > 1) nearest.shape = LOAD(uints, hits.shape);
     return nearest;
 }
 

@@ -43,7 +43,7 @@ Spread spread_of(std::vector<double> values) {
 
 std::vector<std::array<float, 9>> triangles_of(const FlatScene &scene) {
     std::vector<std::array<float, 9>> triangles(scene.triangles.size());
-    for (const TriangleBlock &block : scene.blocks)
+    for (const TriangleBlock &block : scene.triangle_blocks)
         for (int place = 0; place < 8; place++)
             if (block.id[place] != OPAL_NONE)
                 for (int corner = 0; corner < 3; corner++)

@@ -19,12 +19,8 @@ std::string spread_text(const Spread &s, double unit = 1) {
 
 } // namespace
 
-size_t BenchSubject::tree_bytes() const {
-    return flat.nodes.size() * sizeof(BvhNode) + flat.blocks.size() * sizeof(TriangleBlock);
-}
-
 double BenchSubject::bytes_a_triangle() const {
-    return flat.triangles.empty() ? 0 : double(tree_bytes()) / double(flat.triangles.size());
+    return flat.triangles.empty() ? 0 : double(flat.tree_bytes()) / double(flat.triangles.size());
 }
 
 std::string BenchSubject::scene_text() const {
@@ -36,8 +32,8 @@ std::string BenchSubject::device_text() const { return fmt::format("device  {}, 
 
 std::string BenchSubject::tree_text() const {
     return fmt::format("tree    {} nodes, {} blocks, {} ({:.1f} bytes a triangle), SAH cost {:.4g}, built in {:.3g} s",
-                       flat.nodes.size(), flat.blocks.size(), bytes_text(tree_bytes()), bytes_a_triangle(),
-                       flat.sah_cost, flat.bvh_seconds);
+                       flat.nodes.size(), flat.triangle_blocks.size(), bytes_text(flat.tree_bytes()),
+                       bytes_a_triangle(), flat.sah_cost, flat.bvh_seconds);
 }
 
 nlohmann::json BenchSubject::json() const {
@@ -49,8 +45,8 @@ nlohmann::json BenchSubject::json() const {
                    {"triangles", flat.triangles.size()},
                    {"listed_triangles", flat.face_list_triangles},
                    {"nodes", flat.nodes.size()},
-                   {"blocks", flat.blocks.size()},
-                   {"hierarchy_bytes", tree_bytes()},
+                   {"blocks", flat.triangle_blocks.size()},
+                   {"hierarchy_bytes", flat.tree_bytes()},
                    {"bytes_per_triangle", bytes_a_triangle()},
                    {"sah_cost", flat.sah_cost},
                    {"build_seconds", flat.bvh_seconds},

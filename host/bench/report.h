@@ -21,7 +21,6 @@ struct BenchSubject {
     nlohmann::json json() const;
 
 private:
-    size_t tree_bytes() const;
     double bytes_a_triangle() const;
 };
 

@@ -188,13 +188,18 @@ private:
         Split best;
         if (depth < max_sah_depth)
             best = set.size() <= max_sweep_size ? split_swept(set) : split_binned(set);
-        if (set.size() <= block_size)
+        if (set.size() <= block_size && !is_mixed(set))
             return best.cost < box.half_area() ? best.left_count : 0;
         return best.axis < 0 ? halve_at_median(set) : best.left_count; // too deep, or all centres are equal
     }
 };
 
 } // namespace
+
+bool is_mixed(std::span<const BuildPrimitive> set) {
+    return std::any_of(set.begin(), set.end(),
+                       [&](const BuildPrimitive &p) { return shape_of(p.id) != shape_of(set[0].id); });
+}
 
 std::size_t halve_at_median(PrimitiveSpan set) {
     const Box centers = center_bounds(set);

@@ -8,7 +8,7 @@
 
 namespace opal {
 
-constexpr uint block_size = 8; // the most primitives of a leaf: the triangles of a TriangleBlock
+constexpr uint block_size = OPAL_WIDTH; // the most primitives of a leaf
 
 struct BinaryNode {
     Box box;
@@ -23,9 +23,12 @@ struct BinaryTree {
 };
 
 // Builds the tree top down. The cost of n primitives in a box is ceil(n / block_size) times its area, the cost of the
-// blocks that they will fill. Leaves hold 1 to block_size primitives; a set that fits a leaf is still split where both
-// parts together have less area. `primitives` must not be empty.
+// blocks that they will fill. Leaves hold 1 to block_size primitives of one shape; a set that fits a leaf is still
+// split where both parts together have less area. `primitives` must not be empty.
 BinaryTree build_binary_tree(std::vector<BuildPrimitive> primitives);
+
+// Whether primitives are of different shapes, so that they fit no leaf.
+bool is_mixed(std::span<const BuildPrimitive> set);
 
 // Partitions the set at the median of its centres along their longest axis. Returns the size of the first half, which
 // is the larger one where the count is odd.

@@ -31,6 +31,12 @@ struct Box {
             hi[axis] = std::max(hi[axis], box.hi[axis]);
         }
     }
+    std::array<Point3f, 8> corners() const {
+        std::array<Point3f, 8> all;
+        for (std::size_t i = 0; i < 8; i++)
+            all[i] = {i & 1 ? hi[0] : lo[0], i & 2 ? hi[1] : lo[1], i & 4 ? hi[2] : lo[2]};
+        return all;
+    }
     // Half the surface area, in squared units. The box must not be empty.
     float half_area() const {
         const float x = hi[0] - lo[0], y = hi[1] - lo[1], z = hi[2] - lo[2];

@@ -24,7 +24,7 @@ double half_area(const Box &box) {
 } // namespace
 
 Bvh build_bvh(const TriangleSoup &soup) {
-    if (soup.corners.empty())
+    if (soup.corners.empty() && soup.others.empty())
         return {{empty_node()}, pack_blocks(soup)};
     BinaryTree tree = build_binary_tree(split_primitives(soup));
     optimise_by_reinsertion(tree);

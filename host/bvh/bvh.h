@@ -1,22 +1,40 @@
-// The 8-wide bounding volume hierarchy over triangles, and the blocks of eight triangles that are its leaves.
+// The 8-wide bounding volume hierarchy over triangles and primitives of other shapes, and the blocks of up to eight of
+// them that are its leaves.
 #pragma once
 
 #include "bvh/box.h"
+#include "shapes/list.h"
 #include "shared/types.h"
 
 #include <vector>
 
 namespace opal {
 
-// An indexed triangle mesh in flattened units. No triangle is degenerate.
+// An id tells all primitives of a scene apart: shape << OPAL_SHAPE_SHIFT | index among those of its shape. So a
+// triangle's id is its index.
+inline uint shape_of(uint id) { return id >> OPAL_SHAPE_SHIFT; }
+
+// A primitive of another shape than triangles. The tree knows its box alone.
+struct BoundedPrimitive {
+    uint id;
+    Box box;
+    uint mesh; // index
+};
+
+// The primitives of a scene in flattened units: an indexed triangle mesh, no triangle of which is degenerate, and
+// primitives of other shapes.
 struct TriangleSoup {
     std::vector<Point3f> vertices;
-    std::vector<std::array<uint, 3>> corners; // three vertex indices for each triangle id
+    std::vector<std::array<uint, 3>> corners = {}; // three vertex indices for each triangle id
+    std::vector<BoundedPrimitive> others = {};
 };
+
+using BlockIds = std::array<uint, OPAL_WIDTH>; // ids of a block's primitives; OPAL_NONE in unused places, the last ones
 
 struct Bvh {
     std::vector<BvhNode> nodes;        // the root first, parents before their children; never empty
-    std::vector<TriangleBlock> blocks; // the leaves; never empty
+    std::vector<TriangleBlock> blocks; // the leaves of triangles
+    std::array<std::vector<BlockIds>, OPAL_SHAPE_BITS> other_blocks = {}; // the leaves of the other shapes, by shape
 };
 
 // Costs in the surface area heuristic: a visit of a node and the test of a block.
@@ -25,10 +43,11 @@ constexpr double node_cost = 1, block_cost = 1;
 // Builds the tree in three steps: a binary tree by the surface area heuristic, reinsertion, and the collapse to 8
 // children by dynamic programming (Ylitie, Karras, Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through
 // Compressed Wide BVHs", section 3.2). A triangle that split_primitives cuts may be in several blocks, every other one
-// is in one block. levels_of(result) <= OPAL_LEVELS. An empty soup gives a root without children and one empty block.
+// is in one block. No leaf mixes shapes. levels_of(result) <= OPAL_LEVELS. An empty soup gives a root without children
+// and one empty block.
 Bvh build_bvh(const TriangleSoup &soup);
 
-// Packs all triangles into blocks in the order of their ids, for scenes without a tree. An empty soup gives one empty
+// Packs all triangles into blocks in the order of their ids, for scenes without a tree. No triangles give one empty
 // block.
 std::vector<TriangleBlock> pack_blocks(const TriangleSoup &soup);
 

@@ -22,14 +22,6 @@ struct Roots {
     int count = 0;
 };
 
-// The levels of nodes of a balanced tree of `count` primitives.
-int balanced_levels(uint count) {
-    int levels = 0;
-    for (std::uint64_t room = block_size; room < count; room *= node_width)
-        levels++;
-    return levels;
-}
-
 class Collapser {
 public:
     Collapser(BinaryTree &tree, const TriangleSoup &soup) : tree_(tree), soup_(soup), tables_(tree.node_count) {
@@ -51,11 +43,23 @@ private:
     std::vector<ForestTable> tables_;
     Bvh bvh_;
 
+    // The most levels of nodes that emit_balanced makes of `count` primitives.
+    int balanced_levels(uint count) const {
+        int levels = soup_.others.empty() ? 0 : 1; // the last one tells shapes apart
+        for (std::uint64_t room = block_size; room < count; room *= node_width)
+            levels++;
+        return levels;
+    }
+
+    bool fits_leaf(uint first, uint count) {
+        return count <= block_size && (soup_.others.empty() || !is_mixed(primitives(first, first + count)));
+    }
+
     void fill_table(uint index) {
         const BinaryNode &node = tree_.nodes[index];
         ForestTable &table = tables_[index];
         const float area = node.box.half_area();
-        const float leaf = node.count <= block_size ? area * float(block_cost) : Box::infinity;
+        const float leaf = fits_leaf(node.first, node.count) ? area * float(block_cost) : Box::infinity;
         table.levels = 0;
         if (node.left == 0) {
             std::fill(std::begin(table.cost), std::end(table.cost), leaf);
@@ -134,20 +138,41 @@ private:
     }
 
     uint emit_leaf(uint first, uint count) {
-        std::array<uint, block_size> ids;
+        BlockIds ids;
+        ids.fill(OPAL_NONE);
         for (uint i = 0; i < count; i++)
-            ids[i] = tree_.primitives[first + i].triangle;
+            ids[i] = tree_.primitives[first + i].id;
         // Parts of one triangle that meet in a block become one triangle again.
         std::sort(ids.begin(), ids.begin() + count);
-        count = uint(std::unique(ids.begin(), ids.begin() + count) - ids.begin());
-        bvh_.blocks.push_back(pack_block(soup_, ids.data(), count));
-        return OPAL_LEAF | uint(bvh_.blocks.size() - 1);
+        const auto end = std::unique(ids.begin(), ids.begin() + count);
+        const uint shape = shape_of(ids[0]);
+        if (shape == SHAPE_triangle) {
+            bvh_.blocks.push_back(pack_block(soup_, ids.data(), uint(end - ids.begin())));
+            return OPAL_LEAF | uint(bvh_.blocks.size() - 1);
+        }
+        bvh_.other_blocks[shape].push_back(ids);
+        return OPAL_LEAF | shape << OPAL_SHAPE_SHIFT | uint(bvh_.other_blocks[shape].size() - 1);
+    }
+
+    // Emits a node that has a leaf for each shape of at most block_size primitives.
+    uint emit_mixed(uint first, uint count) {
+        const uint place = add_node(), end = first + count;
+        for (int i = 0; first < end; i++) {
+            const auto rest = primitives(first, end);
+            const uint shape = shape_of(rest[0].id);
+            const auto others = std::partition(rest.begin(), rest.end(),
+                                               [&](const BuildPrimitive &p) { return shape_of(p.id) == shape; });
+            const uint same = uint(others - rest.begin());
+            set_child(place, i, box_of(first, first + same), emit_leaf(first, same));
+            first += same;
+        }
+        return place;
     }
 
     // Emits the tree of least depth: each node has eight parts of equally many primitives.
     uint emit_balanced(uint first, uint count) {
         if (count <= block_size)
-            return emit_leaf(first, count);
+            return fits_leaf(first, count) ? emit_leaf(first, count) : emit_mixed(first, count);
         const uint place = add_node();
         std::array<uint, node_width + 1> ends{first, first + count};
         for (int parts = 1; parts < node_width; parts *= 2) // splits each part in two
@@ -155,13 +180,16 @@ private:
                 ends[2 * i] = ends[i];
                 ends[2 * i - 1] = ends[i - 1] + uint(halve_at_median(primitives(ends[i - 1], ends[i])));
             }
-        for (int i = 0; i < node_width; i++) {
-            Box box = Box::empty();
-            for (const BuildPrimitive &primitive : primitives(ends[i], ends[i + 1]))
-                box.add(primitive.box);
-            set_child(place, i, box, emit_balanced(ends[i], ends[i + 1] - ends[i]));
-        }
+        for (int i = 0; i < node_width; i++)
+            set_child(place, i, box_of(ends[i], ends[i + 1]), emit_balanced(ends[i], ends[i + 1] - ends[i]));
         return place;
+    }
+
+    Box box_of(uint begin, uint end) {
+        Box box = Box::empty();
+        for (const BuildPrimitive &primitive : primitives(begin, end))
+            box.add(primitive.box);
+        return box;
     }
 
     std::span<BuildPrimitive> primitives(uint begin, uint end) {

@@ -76,7 +76,7 @@ void add_parts(const Polygon &polygon, const BuildPrimitive &primitive, double m
     for (double sign : {1.0, -1.0}) {
         const Polygon part = clip(polygon, axis, plane, sign);
         if (part.size() >= 3)
-            add_parts(part, {box_of(part, box), primitive.triangle}, max_waste, parts);
+            add_parts(part, {box_of(part, box), primitive.id}, max_waste, parts);
     }
 }
 
@@ -84,18 +84,23 @@ void add_parts(const Polygon &polygon, const BuildPrimitive &primitive, double m
 
 std::vector<BuildPrimitive> whole_primitives(const TriangleSoup &soup) {
     std::vector<BuildPrimitive> whole(soup.corners.size());
+    whole.reserve(whole.size() + soup.others.size());
     for (uint id = 0; id < soup.corners.size(); id++) {
         whole[id] = {Box::empty(), id};
         for (uint vertex : soup.corners[id])
             whole[id].box.add(soup.vertices[vertex]);
     }
+    for (const BoundedPrimitive &other : soup.others)
+        whole.push_back({other.box, other.id});
     return whole;
 }
 
 std::vector<BuildPrimitive> split_primitives(const TriangleSoup &soup) {
     std::vector<BuildPrimitive> whole = whole_primitives(soup);
     const auto wasted_area_of = [&](const BuildPrimitive &primitive) {
-        const auto &[a, b, c] = soup.corners[primitive.triangle];
+        if (shape_of(primitive.id) != SHAPE_triangle)
+            return 0.0;
+        const auto &[a, b, c] = soup.corners[primitive.id];
         return wasted_area(primitive.box, normal_of(soup.vertices[a], soup.vertices[b], soup.vertices[c]));
     };
     double area = 0, waste = 0;
@@ -113,7 +118,7 @@ std::vector<BuildPrimitive> split_primitives(const TriangleSoup &soup) {
             continue;
         }
         Polygon triangle;
-        for (uint vertex : soup.corners[primitive.triangle]) {
+        for (uint vertex : soup.corners[primitive.id]) {
             const auto &[x, y, z] = soup.vertices[vertex];
             triangle.push_back({x, y, z});
         }

@@ -1,4 +1,4 @@
-// The primitives that a tree is built over: one box for each triangle, or several for the parts of a long one.
+// The boxes that a tree is built over: one for each primitive, or several for the parts of a long triangle.
 #pragma once
 
 #include "bvh/box.h"
@@ -7,11 +7,11 @@
 namespace opal {
 
 struct BuildPrimitive {
-    Box box;       // of the triangle, or of a part of it
-    uint triangle; // its id
+    Box box; // of the primitive, or of a part of it
+    uint id; // of the primitive
 };
 
-// One primitive for each triangle, in the order of the ids.
+// One for each triangle, in the order of the ids, then one for each primitive of other shapes.
 std::vector<BuildPrimitive> whole_primitives(const TriangleSoup &soup);
 
 // Early split clipping (Ernst and Greiner 2007, "Early Split Clipping for Bounding Volume Hierarchies"): several

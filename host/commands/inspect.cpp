@@ -68,16 +68,14 @@ std::string parameters_text(Light light) {
 }
 
 void print_mesh(const Mesh &mesh) {
-    const auto *triangles = std::get_if<TriangleMesh>(&mesh.shape);
-    row("", "{}: {}, {}{}", mesh.name,
-        triangles ? fmt::format("{} triangles", triangles->triangles.size()) : "parallelogram",
+    row("", "{}: {}, {}{}", mesh.name, std::visit([](const auto &shape) { return shape.text(); }, mesh.shape),
         bsdf_name(mesh.bsdf.kind()), mesh.radiance ? ", emits " + color_text(*mesh.radiance) + " W/(m^2 sr)" : "");
 }
 
 void print_scene(const SceneDescription &scene, const FlatScene &flat) {
     const Camera &camera = scene.camera;
     row("scene", "{}", scene.file.string());
-    row("camera", "{} x {} pixels, {:g} degrees wide, near {:g}, far {:g}", camera.width, camera.height, camera.fov,
+    row("camera", "{} x {} pixels, {}, near {:g}, far {:g}", camera.width, camera.height, camera_text(camera),
         camera.near_clip, camera.far_clip);
     row("filter", "{}{}", filter_text(camera.filter), camera.filter.given ? "" : " (the dialect's default)");
     row("samples", "{} a pixel", scene.spp);

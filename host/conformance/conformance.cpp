@@ -98,7 +98,8 @@ private:
                             const Planes drawn = probe.bsdf_sample(id, direction_at(angle), numbers);
                             for (size_t i = 0; i < drawn.count; i++) {
                                 const Vec3 w = drawn.vec3(BSDF_WEIGHT_R, i);
-                                weights.add(luminance({w.x, w.y, w.z}));
+                                const double eta = drawn.at(BSDF_ETA, i); // Nori's weights are those of radiance
+                                weights.add(luminance({w.x, w.y, w.z}) / (eta * eta));
                             }
                         });
         judge_mean(fmt::format("{} at {:g} degrees", bsdf_name(test_.bsdfs[id].kind()), angle), weights.sample(), "");

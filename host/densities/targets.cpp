@@ -115,7 +115,7 @@ Target open_bsdf(uint kind, const Parameters &parameters, const Device &device, 
     return target;
 }
 
-Mesh light_of(examples::Shape shape, double radiance) {
+Mesh light_of(Shape shape, double radiance) {
     Mesh mesh = examples::light(std::move(shape), radiance);
     mesh.bsdf = Bsdf();
     return mesh;

@@ -108,7 +108,7 @@ SceneDescription deep_furnace(double depth) { return furnace(0.1, unsigned(depth
 
 SceneDescription seen_through(double degrees) {
     SceneDescription scene = room();
-    scene.camera.fov = degrees;
+    scene.camera.perspective.fov = degrees;
     return scene;
 }
 SceneDescription clipped_near(double distance) {
@@ -198,7 +198,7 @@ SceneDescription glowing_column(double height) {
     SceneDescription scene = glowing_wall(0);
     scene.camera.width = 1;
     scene.camera.height = int(height);
-    scene.camera.fov = 2 * std::atan(0.5 / height) * (180 / std::numbers::pi);
+    scene.camera.perspective.fov = 2 * std::atan(0.5 / height) * (180 / std::numbers::pi);
     return scene;
 }
 double glow_truth(double) { return double(0.1f); }

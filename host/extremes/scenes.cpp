@@ -9,18 +9,6 @@ namespace {
 // An arbitrary rotation, so that no coordinate is exact by chance.
 const Transform rotation = Transform::rotate({1, 2, 3}, 34) * Transform::rotate({0, 1, 0}, 21);
 
-TriangleMesh moved(TriangleMesh mesh, const Transform &by) {
-    for (Vec3 &p : mesh.positions)
-        p = by.point(p);
-    for (Vec3 &n : mesh.normals)
-        n = normalize(by.normal(n));
-    return mesh;
-}
-
-Parallelogram moved(const Parallelogram &p, const Transform &by) {
-    return {by.point(p.origin), by.vector(p.u), by.vector(p.v)};
-}
-
 template <class Value> Value moved(const Value &value, ParameterType, const Transform &) { return value; }
 Vec3 moved(Vec3 value, ParameterType type, const Transform &by) {
     return type == ParameterType::POINT ? by.point(value) : by.vector(value);
@@ -30,7 +18,7 @@ Vec3 moved(Vec3 value, ParameterType type, const Transform &by) {
 
 SceneDescription moved(SceneDescription scene, const Transform &by) {
     for (Mesh &mesh : scene.meshes)
-        std::visit([&](auto &shape) { shape = moved(shape, by); }, mesh.shape);
+        std::visit([&](auto &shape) { shape = shape.moved(by); }, mesh.shape);
     for (Light &light : scene.lights)
         light.visit([&](const Parameter &parameter, auto &value) { value = moved(value, parameter.type, by); });
     scene.camera.to_world = by * scene.camera.to_world;

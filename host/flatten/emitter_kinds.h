@@ -1,4 +1,4 @@
-// What the host knows of each kind of emitter: functions that flatten/emitters/NAME.cpp defines.
+// What the host knows of each kind of emitter: functions that flatten/emitter_NAME.cpp defines.
 #pragma once
 
 #include "flatten/geometry.h"

@@ -19,8 +19,8 @@ bool is_black(const Color &c) { return c[0] == 0 && c[1] == 0 && c[2] == 0; }
 // The slot of each triangle's vertices, by triangle id (EmittingMesh::slots).
 std::vector<uint> triangle_slots(const FlatScene &scene) {
     std::vector<uint> slots(scene.triangles.size());
-    for (uint slot = 0; slot < scene.blocks.size() * block_size; slot++) {
-        const uint id = scene.blocks[slot / block_size].id[slot % block_size];
+    for (uint slot = 0; slot < scene.triangle_blocks.size() * block_size; slot++) {
+        const uint id = scene.triangle_blocks[slot / block_size].id[slot % block_size];
         if (id != OPAL_NONE)
             slots[id] = slot;
     }

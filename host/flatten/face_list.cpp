@@ -19,9 +19,9 @@ Box box_of(const TriangleSoup &soup, uint id) {
     return box;
 }
 
-// The soup of some of the triangles, numbered by their place in `ids`.
+// The soup with some of the triangles only, numbered by their place in `ids`.
 TriangleSoup subset_of(const TriangleSoup &soup, const std::vector<uint> &ids) {
-    TriangleSoup part{soup.vertices, {}};
+    TriangleSoup part{soup.vertices, {}, soup.others};
     for (uint id : ids)
         part.corners.push_back(soup.corners[id]);
     return part;
@@ -32,6 +32,24 @@ void map_ids(std::vector<TriangleBlock> &blocks, const std::vector<uint> &ids) {
     for (TriangleBlock &block : blocks)
         for (uint &id : block.id)
             id = id == OPAL_NONE ? OPAL_NONE : ids[id];
+}
+
+// Puts primitives together as the tree's leaves ask. `single` holds each primitive of a shape, in the first place of a
+// block of its own. A block's rows have OPAL_WIDTH words; unused places repeat the first primitive, but have no id.
+template <class Block>
+std::vector<Block> fill_blocks(const std::vector<Block> &single, const std::vector<BlockIds> &leaves) {
+    std::vector<Block> filled(leaves.size());
+    for (std::size_t i = 0; i < leaves.size(); i++) {
+        for (int place = 0; place < OPAL_WIDTH; place++) {
+            const uint id = leaves[i][leaves[i][place] == OPAL_NONE ? 0 : place];
+            const auto *from = reinterpret_cast<const uint *>(&single[id & OPAL_BLOCK_BITS]);
+            auto *to = reinterpret_cast<uint *>(&filled[i]);
+            for (std::size_t word = 0; word < sizeof(Block) / sizeof(uint); word += OPAL_WIDTH)
+                to[word + place] = from[word];
+        }
+        std::copy(leaves[i].begin(), leaves[i].end(), filled[i].id);
+    }
+    return filled;
 }
 
 Vec3 vec3(const Point3f &p) { return {p[0], p[1], p[2]}; }
@@ -131,6 +149,9 @@ bool never_blocks(const Face &face, const TriangleSoup &soup, const std::vector<
     for (size_t i = 0; i < soup.corners.size() && sides.all_on_one_side(rounding); i++)
         for (uint vertex : soup.corners[i])
             sides.add(soup.vertices[vertex]);
+    for (const BoundedPrimitive &other : soup.others)
+        for (const Point3f &corner : other.box.corners())
+            sides.add(corner);
     return sides.all_on_one_side(rounding);
 }
 
@@ -141,6 +162,8 @@ std::vector<uint> choose_face_list(const TriangleSoup &soup) {
     for (const auto &corners : soup.corners)
         for (uint vertex : corners)
             scene.add(soup.vertices[vertex]);
+    for (const BoundedPrimitive &other : soup.others)
+        scene.add(other.box);
     const bool tiny = soup.corners.size() <= OPAL_FACE_LIST_TRIANGLES;
     std::vector<std::pair<float, uint>> candidates; // -area, id: the largest come first, equals in their order
     for (uint id = 0; id < soup.corners.size(); id++)
@@ -196,14 +219,19 @@ void build_tree(const TriangleSoup &soup, const std::vector<Face> &faces, FlatSc
         map_ids(bvh.blocks, others);
     scene.sah_cost = sah_cost(bvh);
     scene.nodes = std::move(bvh.nodes);
-    scene.blocks = std::move(bvh.blocks);
+    scene.triangle_blocks = std::move(bvh.blocks);
+#define OPAL_FILL_BLOCKS(name, Block)                                                                                  \
+    if (SHAPE_##name != SHAPE_triangle)                                                                                \
+        scene.name##_blocks = fill_blocks(scene.name##_blocks, bvh.other_blocks[SHAPE_##name]);
+    OPAL_SHAPES(OPAL_FILL_BLOCKS)
+#undef OPAL_FILL_BLOCKS
 }
 
 void list_faces(const TriangleSoup &soup, std::vector<Face> faces, const std::optional<std::vector<Point3f>> &lights,
                 FlatScene &scene) {
     const auto may_block = [&](const Face &face) { return !lights || !never_blocks(face, soup, *lights); };
     const auto idle = std::stable_partition(faces.begin(), faces.end(), may_block);
-    scene.settings.face_list_slot = uint(scene.blocks.size()) * 8;
+    scene.settings.face_list_slot = uint(scene.triangle_blocks.size()) * 8;
     std::map<Point3f, uint> vertices;
     std::vector<uint> shapes, ids; // by slot: a triangle of its shape, and of its id
     for (const Face &face : faces) {
@@ -228,7 +256,7 @@ void list_faces(const TriangleSoup &soup, std::vector<Face> faces, const std::op
     if (!faces.empty()) {
         std::vector<TriangleBlock> blocks = pack_blocks(subset_of(soup, shapes));
         map_ids(blocks, ids);
-        scene.blocks.insert(scene.blocks.end(), blocks.begin(), blocks.end());
+        scene.triangle_blocks.insert(scene.triangle_blocks.end(), blocks.begin(), blocks.end());
     }
     scene.face_vertices.resize(3 * vertices.size());
     for (const auto &[position, place] : vertices)

@@ -25,13 +25,14 @@ struct Face {
 // `triangles`, so that they begin at A and at D.
 std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, std::vector<Triangle> &triangles);
 
-// Builds the tree over the triangles that are in no face of `faces`: fills scene.nodes, scene.blocks and
-// scene.sah_cost.
+// Builds the tree over the primitives that are in no face of `faces`: fills scene.nodes, scene.sah_cost and the shapes'
+// blocks.
 void build_tree(const TriangleSoup &soup, const std::vector<Face> &faces, FlatScene &scene);
 
-// Appends the blocks of the face list to scene.blocks and fills their tables. Faces that no ray from a point of the
-// scene to a point of `lights` or of their convex hull can cross come last: the whole scene is on one side of their
-// plane, or all lights are in it. Where `lights` is nothing, light comes from outside the scene, and there are none.
+// Appends the blocks of the face list to scene.triangle_blocks and fills their tables. Faces that no ray from a point
+// of the scene to a point of `lights` or of their convex hull can cross come last: the whole scene is on one side of
+// their plane, or all lights are in it. Where `lights` is nothing, light comes from outside the scene, and there are
+// none.
 void list_faces(const TriangleSoup &soup, std::vector<Face> faces, const std::optional<std::vector<Point3f>> &lights,
                 FlatScene &scene);
 

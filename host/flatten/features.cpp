@@ -25,14 +25,7 @@ constexpr std::size_t large_tree_bytes = 4 << 20;
 class Decider {
 public:
     Decider(const SceneDescription &from, const FlatScene &flat, int width)
-        : description(from), scene(flat), lanes(width) {
-        const int integrator = description.strategy[AXIS_integrator];
-        unlit = integrator == CHOICE_integrator_normals || integrator == CHOICE_integrator_ao ||
-                integrator == CHOICE_integrator_simple;
-        bsdf_sampling_only =
-            (integrator == CHOICE_integrator_direct_lighting || integrator == CHOICE_integrator_path) &&
-            description.strategy[AXIS_lighting] == CHOICE_lighting_bsdf;
-    }
+        : description(from), scene(flat), lanes(width), integrator(integrator_of(from.strategy)) {}
 
 #define OPAL_DECIDE_BSDF(name, traits)                                                                                 \
     Decision bsdf_##name() const { return bsdf(BSDF_##name); }
@@ -44,8 +37,17 @@ public:
     OPAL_EMITTERS(OPAL_DECIDE_EMITTER)
 #undef OPAL_DECIDE_EMITTER
 
+#define OPAL_DECIDE_SHAPE(name, Block)                                                                                 \
+    Decision shape_##name() const { return shape(scene.name##_blocks.size()); }
+    OPAL_SHAPES(OPAL_DECIDE_SHAPE)
+#undef OPAL_DECIDE_SHAPE
+#define OPAL_DECIDE_CAMERA(name, record, traits)                                                                       \
+    Decision camera_##name() const { return camera(CAMERA_##name); }
+    OPAL_CAMERAS(OPAL_DECIDE_CAMERA)
+#undef OPAL_DECIDE_CAMERA
+
     Decision bsdf(uint kind) const {
-        if (unlit)
+        if (!integrator.has(OPAL_ASKS_BSDFS))
             return {false, "this integrator asks no BSDF"};
         const auto has = [&](const MeshRecord &mesh) {
             bool found = false;
@@ -57,17 +59,22 @@ public:
     }
 
     Decision emitter(uint kind) const {
-        if (unlit)
+        if (!integrator.has(OPAL_ASKS_LIGHTS))
             return {false, "this integrator asks no emitter"};
-        if (!OPAL_CAN_BE_MET(emitter_traits(kind)) && bsdf_sampling_only)
+        if (!can_be_met(kind) && !samples_emitters(description.strategy))
             return {false, fmt::format("a BSDF sample never hits a {} light", emitter_name(kind))};
         const auto has = [&](const EmitterRecord &emitter) { return emitter.kind == kind; };
         return counted(std::size_t(std::count_if(scene.emitters.begin(), scene.emitters.end(), has)),
                        scene.emitters.size(), "emitter", "emitters");
     }
 
+    static Decision shape(std::size_t blocks) { return {blocks > 0, plural(blocks, "block", "blocks")}; }
+    Decision camera(uint kind) const {
+        return {description.camera.kind == kind, fmt::format("the camera is {}", camera_name(description.camera.kind))};
+    }
+
     Decision many_emitters() const {
-        if (unlit)
+        if (!integrator.has(OPAL_ASKS_LIGHTS))
             return {false, "this integrator asks no emitter"};
         return {scene.emitters.size() > 1, plural(scene.emitters.size(), "emitter", "emitters")};
     }
@@ -89,15 +96,18 @@ public:
 
     Decision tree() const {
         const std::size_t inside = scene.triangles.size() - scene.face_list_triangles;
-        if (inside == 0 && lanes >= FACE_LIST_LANES)
+        std::size_t others = 0; // blocks of other shapes
+#define OPAL_COUNT_BLOCKS(name, Block) others += SHAPE_##name == SHAPE_triangle ? 0 : scene.name##_blocks.size();
+        OPAL_SHAPES(OPAL_COUNT_BLOCKS)
+#undef OPAL_COUNT_BLOCKS
+        if (inside == 0 && others == 0 && lanes >= FACE_LIST_LANES)
             return {false, scene.triangles.empty() ? "there are no triangles" : "all triangles are listed"};
-        return {true, plural(inside, "triangle", "triangles")};
+        return {true, plural(inside, "triangle", "triangles") + (others ? " and other shapes" : "")};
     }
 
     Decision large_tree() const {
-        const std::size_t bytes = scene.nodes.size() * sizeof(BvhNode) + scene.blocks.size() * sizeof(TriangleBlock);
-        return {tree().on && bytes > large_tree_bytes,
-                fmt::format("{:.1f} MiB of nodes and triangles", double(bytes) / (1 << 20))};
+        return {tree().on && scene.tree_bytes() > large_tree_bytes,
+                fmt::format("{:.1f} MiB of nodes and blocks", double(scene.tree_bytes()) / (1 << 20))};
     }
 
     Decision wide_filter() const {
@@ -115,8 +125,7 @@ private:
     const SceneDescription &description;
     const FlatScene &scene;
     int lanes;
-    bool unlit;              // the integrator evaluates neither BSDFs nor emitters
-    bool bsdf_sampling_only; // no light sampling: emitters are found by BSDF samples alone
+    const IntegratorTraits &integrator;
 
     static Decision counted(std::size_t count, std::size_t all, const char *one, const char *many) {
         if (count == 0)

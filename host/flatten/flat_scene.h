@@ -44,6 +44,8 @@ struct FlatScene {
 
     double sah_cost = 0;    // of the tree, in triangle block tests and node visits
     double bvh_seconds = 0; // wall time of the build
+
+    std::size_t tree_bytes() const; // of the nodes and of all shapes' blocks
 };
 
 // Calls visit(at) for the record of a mesh's BSDF and those that it leads to; at: the first word in scene.bsdfs.

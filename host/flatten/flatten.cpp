@@ -1,3 +1,4 @@
+#include "flatten/camera.h"
 #include "flatten/distribution.h"
 #include "flatten/emitter_kinds.h"
 #include "flatten/emitters.h"
@@ -8,33 +9,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <map>
-#include <numbers>
 
 namespace opal {
 namespace {
 
-// A distance as a float; one beyond the range of floats becomes the largest float.
-float to_distance(double d) { return float(std::min(d, double(std::numeric_limits<float>::max()))); }
-
-// Fills the perspective camera. The ray through the point (sx, sy) of the image, in [0, 1)^2 from its top left corner,
-// has the direction left (1 - 2 sx) tan_half_x + up (1 - 2 sy) tan_half_y + forward. These vectors are the columns of
-// toWorld divided by the length of the third one, `depth`: a point at depth z in camera space lies z * depth times that
-// direction away.
-void fill_camera(const Camera &camera, const Flattening &flattening, Settings &settings) {
-    const auto &rows = camera.to_world.rows;
-    const auto column = [&rows](int i) { return Vec3{rows[0][i], rows[1][i], rows[2][i]}; };
-    const double depth = length(column(2));
-    store((camera.to_world.point({}) - flattening.center) * flattening.scale, settings.camera_origin);
-    store(column(0) * (1 / depth), settings.camera_left);
-    store(column(1) * (1 / depth), settings.camera_up);
-    store(column(2) * (1 / depth), settings.camera_forward);
-    const double tangent = std::tan(camera.fov * (std::numbers::pi / 360));
-    settings.tan_half_x = float(tangent);
-    settings.tan_half_y = float(tangent * camera.height / camera.width);
-    settings.near_clip = to_distance(camera.near_clip * depth * flattening.scale);
-    settings.far_clip = to_distance(camera.far_clip * depth * flattening.scale);
+void fill_film(const Camera &camera, Settings &settings) {
     settings.width = uint(camera.width);
     settings.height = uint(camera.height);
     settings.filter = camera.filter.kind;
@@ -98,8 +78,8 @@ void gather_bsdfs(const SceneDescription &description, FlatScene &scene) {
     scene.bsdfs.resize(scene.bsdfs.size() + longest / sizeof(uint));
 }
 
-// Corners of the boxes of lights, and of emitting triangles: every shadow ray ends at one of these points or in their
-// convex hull. Nothing: there are lights that are infinitely far.
+// Corners of the boxes of lights, of emitting triangles, and those of the boxes of other primitives that emit: every
+// shadow ray ends at one of these points or in their convex hull. Nothing: there are lights that are infinitely far.
 std::optional<std::vector<Point3f>> light_points(const SceneDescription &description, const Flattening &flattening,
                                                  const TriangleSoup &soup, const std::vector<Triangle> &triangles) {
     std::vector<Point3f> points;
@@ -115,6 +95,10 @@ std::optional<std::vector<Point3f>> light_points(const SceneDescription &descrip
         if (description.meshes[triangles[id].mesh].radiance)
             for (uint vertex : soup.corners[id])
                 points.push_back(soup.vertices[vertex]);
+    for (const BoundedPrimitive &other : soup.others)
+        if (description.meshes[other.mesh].radiance)
+            for (const Point3f &corner : other.box.corners())
+                points.push_back(corner);
     return points;
 }
 
@@ -127,7 +111,7 @@ void build_acceleration(TriangleSoup &soup, const std::optional<std::vector<Poin
     std::vector<Face> faces = pair_up(ids, soup, scene.triangles);
     if (!with_face_list)
         faces.clear();
-    if (faces.empty() || ids.size() < soup.corners.size())
+    if (faces.empty() || ids.size() < soup.corners.size() || !soup.others.empty())
         build_tree(soup, faces, scene);
     list_faces(soup, std::move(faces), lights, scene);
     scene.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -135,15 +119,24 @@ void build_acceleration(TriangleSoup &soup, const std::optional<std::vector<Poin
 
 } // namespace
 
+std::size_t FlatScene::tree_bytes() const {
+    std::size_t bytes = nodes.size() * sizeof(BvhNode);
+#define OPAL_ADD_BLOCKS(name, Block) bytes += name##_blocks.size() * sizeof(name##_blocks[0]);
+    OPAL_SHAPES(OPAL_ADD_BLOCKS)
+#undef OPAL_ADD_BLOCKS
+    return bytes;
+}
+
 FlatScene flatten(const SceneDescription &description, int lanes) {
     FlatScene scene;
     const Flattening flattening = find_flattening(description);
     scene.center = flattening.center;
     scene.scale = flattening.scale;
-    fill_camera(description.camera, flattening, scene.settings);
+    scene.cameras.push_back(flatten_camera(description.camera, flattening));
+    fill_film(description.camera, scene.settings);
     fill_strategy(description, flattening, scene.settings);
     gather_bsdfs(description, scene);
-    TriangleSoup soup = gather_triangles(description, flattening, scene);
+    TriangleSoup soup = gather_primitives(description, flattening, scene);
     build_acceleration(soup, light_points(description, flattening, soup, scene.triangles),
                        lanes >= FACE_LIST_LANES && description.strategy.specialise, scene);
     gather_emitters(description, flattening, soup, scene);

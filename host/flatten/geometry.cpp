@@ -5,25 +5,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <limits>
+#include <span>
 
 namespace opal {
 namespace {
-
-std::array<Vec3, 4> corners_of(const Parallelogram &p) {
-    return {p.origin, p.origin + p.u, p.origin + p.v, p.origin + p.u + p.v};
-}
-
-void add_extent(const Parallelogram &shape, Extent &extent) {
-    for (Vec3 corner : corners_of(shape))
-        extent.add(corner);
-}
-void add_extent(const TriangleMesh &shape, Extent &extent) {
-    for (const auto &triangle : shape.triangles)
-        for (const auto &corner : triangle)
-            extent.add(shape.positions[corner.position]);
-}
 
 // Whether a device computes the direction of the normal in float: the squared length must not be denormal, in float nor
 // in exact arithmetic.
@@ -36,15 +22,27 @@ bool has_normal(const Point3f &a, const Point3f &b, const Point3f &c) {
     return nx * nx + ny * ny + nz * nz >= least && dot(exact, exact) >= double(least);
 }
 
-class TriangleGatherer {
+class PrimitiveGatherer {
 public:
-    TriangleGatherer(const Flattening &flattening, FlatScene &scene) : flattening_(flattening), scene_(scene) {}
+    PrimitiveGatherer(const Flattening &flattening, FlatScene &scene) : flattening_(flattening), scene_(scene) {}
 
-    void add(const TriangleMesh &mesh) {
-        const uint first_normal = uint(scene_.normals.size() / 3);
-        base_ = uint(soup.vertices.size());
-        for (Vec3 position : mesh.positions)
-            soup.vertices.push_back(flattening_(position));
+    void add(const Mesh &mesh, uint index) {
+        mesh_ = index;
+        std::visit([this](const auto &shape) { add_primitives(shape); }, mesh.shape);
+    }
+
+    TriangleSoup soup;
+    std::size_t dropped = 0;
+
+private:
+    const Flattening &flattening_;
+    FlatScene &scene_;
+    uint mesh_ = 0; // index of the current one
+
+    // What each kind of shape is to the device.
+
+    void add_primitives(const TriangleMesh &mesh) {
+        const uint first_normal = uint(scene_.normals.size() / 3), first = add_vertices(mesh.positions);
         for (Vec3 normal : mesh.normals)
             for (double component : {normal.x, normal.y, normal.z})
                 scene_.normals.push_back(float(component));
@@ -55,60 +53,41 @@ public:
             std::array<uint, 3> normals{OPAL_NONE, OPAL_NONE, OPAL_NONE};
             for (int i = 0; i < 3 && smooth; i++)
                 normals[i] = first_normal + triangle[i].normal;
-            add_triangle({triangle[0].position, triangle[1].position, triangle[2].position}, normals);
+            add_triangle(first, {triangle[0].position, triangle[1].position, triangle[2].position}, normals);
         }
-        mesh_index_++;
     }
 
-    void add(const Parallelogram &shape) {
-        base_ = uint(soup.vertices.size());
-        for (Vec3 corner : corners_of(shape))
-            soup.vertices.push_back(flattening_(corner));
-        add_triangle({0, 1, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE});
-        add_triangle({1, 3, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE});
-        mesh_index_++;
+    void add_primitives(const Parallelogram &shape) {
+        const uint first = add_vertices(shape.corners());
+        add_triangle(first, {0, 1, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE});
+        add_triangle(first, {1, 3, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE});
     }
 
-    TriangleSoup soup;
-    std::size_t dropped = 0;
+    // Returns the index of the first one.
+    uint add_vertices(std::span<const Vec3> positions) {
+        const uint first = uint(soup.vertices.size());
+        for (Vec3 position : positions)
+            soup.vertices.push_back(flattening_(position));
+        return first;
+    }
 
-private:
-    const Flattening &flattening_;
-    FlatScene &scene_;
-    uint base_ = 0, mesh_index_ = 0; // of the current mesh: its first vertex in the soup, and its index
-
-    void add_triangle(std::array<uint, 3> corners, std::array<uint, 3> normals) {
+    // corners: counted from the vertex `first`
+    void add_triangle(uint first, std::array<uint, 3> corners, std::array<uint, 3> normals) {
         for (uint &corner : corners)
-            corner += base_;
+            corner += first;
         if (!has_normal(soup.vertices[corners[0]], soup.vertices[corners[1]], soup.vertices[corners[2]])) {
             dropped++;
             return;
         }
         soup.corners.push_back(corners);
-        scene_.triangles.push_back({{normals[0], normals[1], normals[2]}, mesh_index_});
+        scene_.triangles.push_back({{normals[0], normals[1], normals[2]}, mesh_});
     }
 };
 
 } // namespace
 
-void Extent::add(Vec3 p) {
-    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
-    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
-}
-
-void Extent::add(const Extent &other) {
-    add(other.lo);
-    add(other.hi);
-}
-
-double Extent::longest_side() const { return empty() ? 0 : std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z}); }
-
-double Extent::radius() const { return empty() ? 0 : length(hi - lo) / 2; }
-
 Extent extent_of(const Mesh &mesh) {
-    Extent extent;
-    std::visit([&](const auto &shape) { add_extent(shape, extent); }, mesh.shape);
-    return extent;
+    return std::visit([](const auto &shape) { return shape.extent(); }, mesh.shape);
 }
 
 Extent extent_of(const SceneDescription &scene) {
@@ -138,22 +117,22 @@ Flattening find_flattening(const SceneDescription &scene) {
     return {center, std::ldexp(1.0, m == 0.5 ? 1 - exponent : -exponent)};
 }
 
-TriangleSoup gather_triangles(const SceneDescription &description, const Flattening &flattening, FlatScene &scene) {
-    TriangleGatherer gatherer(flattening, scene);
+TriangleSoup gather_primitives(const SceneDescription &description, const Flattening &flattening, FlatScene &scene) {
+    PrimitiveGatherer gatherer(flattening, scene);
     std::size_t vertices = 0, triangles = 0;
-    for (const Mesh &mesh : description.meshes) {
-        const auto *mesh_shape = std::get_if<TriangleMesh>(&mesh.shape);
-        vertices += mesh_shape ? mesh_shape->positions.size() : 4;
-        triangles += mesh_shape ? mesh_shape->triangles.size() : 2;
-    }
+    for (const Mesh &mesh : description.meshes)
+        if (const auto *shape = std::get_if<TriangleMesh>(&mesh.shape)) {
+            vertices += shape->positions.size();
+            triangles += shape->triangles.size();
+        }
     gatherer.soup.vertices.reserve(vertices);
     gatherer.soup.corners.reserve(triangles);
     scene.triangles.reserve(triangles);
-    for (const Mesh &mesh : description.meshes)
-        std::visit([&](const auto &shape) { gatherer.add(shape); }, mesh.shape);
+    for (uint mesh = 0; mesh < description.meshes.size(); mesh++)
+        gatherer.add(description.meshes[mesh], mesh);
     if (gatherer.dropped > 0)
         warn(fmt::format("{} of {} triangles dropped: no area is left of them in single precision", gatherer.dropped,
-                         triangles));
+                         gatherer.soup.corners.size() + gatherer.dropped));
     return std::move(gatherer.soup);
 }
 

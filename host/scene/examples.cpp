@@ -8,7 +8,7 @@ Camera camera(Vec3 from, Vec3 to, double fov) {
     Camera camera;
     const Vec3 d = normalize(to - from);
     camera.to_world = Transform::look_at(from, to, std::abs(d.y) > 0.9 ? Vec3{0, 0, 1} : Vec3{0, 1, 0});
-    camera.fov = fov;
+    camera.perspective.fov = fov;
     camera.near_clip = 0;
     camera.far_clip = 1e30;
     return camera;

@@ -24,7 +24,6 @@ TriangleMesh quad(Vec3 o, Vec3 u, Vec3 v);
 // An axis-parallel cube of 12 triangles.
 TriangleMesh cube(Vec3 center, double half_side, bool inwards = false);
 
-using Shape = std::variant<TriangleMesh, Parallelogram>;
 Mesh made_of(Shape shape, const Bsdf &bsdf);
 // A grey area light that reflects nothing; radiance in W / (m^2 sr).
 Mesh light(Shape shape, double radiance);

@@ -99,19 +99,32 @@ StrategyOption option_of_axis(int axis) {
 
 constexpr bool university = true;
 
-// The nine names of the two dialects, and `path`: a path tracer whose lighting is given by a property.
-const std::vector<IntegratorType> types = {
-    {"normals", CHOICE_integrator_normals},
-    {"ao", CHOICE_integrator_ao},
-    {"simple", CHOICE_integrator_simple},
+// Names of the two dialects that imply choices, or differ from the integrator's own. An integrator that is not here has
+// its own name.
+const std::vector<IntegratorType> dialect_types = {
     {"whitted", CHOICE_integrator_whitted, !university, CHOICE_lighting_emitter, CHOICE_rr_fixed},
     {"direct_lighting", CHOICE_integrator_direct_lighting, university},
     {"path_tracer_recursive", CHOICE_integrator_path, university},
     {"path_mats", CHOICE_integrator_path, !university, CHOICE_lighting_bsdf, CHOICE_rr_throughput_eta},
     {"path_ems", CHOICE_integrator_path, !university, CHOICE_lighting_emitter, CHOICE_rr_throughput_eta},
     {"path_mis", CHOICE_integrator_path, !university, CHOICE_lighting_mis, CHOICE_rr_throughput_eta},
-    {"path", CHOICE_integrator_path},
 };
+
+std::vector<IntegratorType> all_types() {
+    std::vector<IntegratorType> types;
+    for (size_t i = 0; i < integrators().size(); i++) {
+        const IntegratorType own{integrators()[i].name, int(i)};
+        bool named = false;
+        for (const IntegratorType &type : dialect_types)
+            if (type.integrator == own.integrator) {
+                types.push_back(type);
+                named = named || type.name == own.name;
+            }
+        if (!named)
+            types.push_back(own);
+    }
+    return types;
+}
 
 } // namespace
 
@@ -139,10 +152,13 @@ void set_option(Strategy &strategy, const std::string &name, const std::string &
     throw Error(unknown_name("strategy option", name, known));
 }
 
-std::span<const IntegratorType> integrator_types() { return types; }
+std::span<const IntegratorType> integrator_types() {
+    static const std::vector<IntegratorType> types = all_types();
+    return types;
+}
 
 const IntegratorType &find_integrator(const std::string &name) {
-    return find_row(types, "integrator", replaced(name, '-', '_'));
+    return find_row(integrator_types(), "integrator", replaced(name, '-', '_'));
 }
 
 void apply_integrator(Strategy &strategy, const IntegratorType &type) {
@@ -162,12 +178,9 @@ void override_strategy(Strategy &strategy, const std::map<std::string, std::stri
     for (const auto &[name, value] : overrides)
         if (name != "integrator")
             set_option(strategy, name, value);
-    bool one_sample_means_something = strategy[AXIS_integrator] == CHOICE_integrator_direct_lighting &&
-                                      strategy[AXIS_lighting] == CHOICE_lighting_mis;
-    if (strategy[AXIS_mis] == CHOICE_mis_one_sample && !one_sample_means_something && !given("mis"))
+    if (strategy[AXIS_mis] == CHOICE_mis_one_sample && !can_take_one_sample(strategy) && !given("mis"))
         strategy[AXIS_mis] = CHOICE_mis_balance;
-    if (strategy[AXIS_integrator] == CHOICE_integrator_ao && strategy[AXIS_hemisphere] == CHOICE_hemisphere_material &&
-        !given("hemisphere"))
+    if (!has_hemisphere(strategy) && !given("hemisphere"))
         strategy[AXIS_hemisphere] = CHOICE_hemisphere_cosine;
 }
 

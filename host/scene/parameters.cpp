@@ -54,11 +54,14 @@ std::span<const Parameter> emitter_parameters(uint kind) {
 }
 
 std::string text_of(const Parameter &parameter) {
-    const ValueRange &range = parameter.range;
-    if (parameter.type == ParameterType::FLAG)
-        return "true or false";
+    return parameter.type == ParameterType::FLAG ? "true or false" : text_of(parameter.range);
+}
+
+std::string text_of(const ValueRange &range) {
     if (std::isinf(range.least) && std::isinf(range.most))
         return "any";
+    if (range.without_most)
+        return fmt::format("above {:g} and below {:g}", range.least, range.most);
     if (!std::isinf(range.most))
         return fmt::format("{:g} to {:g}", range.least, range.most);
     return range.without_least ? fmt::format("above {:g}", range.least) : fmt::format("{:g} or more", range.least);

@@ -19,12 +19,16 @@ namespace opal {
 struct ValueRange {
     double least = -INFINITY, most = INFINITY;
     bool without_least = false; // `least` itself is no such number
-    bool holds(double x) const { return (without_least ? x > least : x >= least) && x <= most; }
+    bool without_most = false;
+    bool holds(double x) const {
+        return (without_least ? x > least : x >= least) && (without_most ? x < most : x <= most);
+    }
 };
 constexpr ValueRange ANY{};
 constexpr ValueRange AT_LEAST(double least) { return {least}; }
 constexpr ValueRange ABOVE(double least) { return {least, INFINITY, true}; }
 constexpr ValueRange BETWEEN(double least, double most) { return {least, most}; }
+constexpr ValueRange INSIDE(double least, double most) { return {least, most, true, true}; }
 
 constexpr double REQUIRED = NAN; // in place of a default
 
@@ -44,7 +48,8 @@ struct Parameter {
 std::span<const Parameter> bsdf_parameters(uint kind);    // kind: BSDF_*
 std::span<const Parameter> emitter_parameters(uint kind); // kind: EMITTER_*; none of emitters of meshes
 
-std::string text_of(const Parameter &parameter);         // what it may be: "0 or more", "above 0", "true or false"
+std::string text_of(const ValueRange &range);            // what a number may be: "0 or more", "above 0"
+std::string text_of(const Parameter &parameter);         // what it may be: "above 0", "true or false"
 std::string text_of_initial(const Parameter &parameter); // "0.5", "false"
 const char *xml_tag(ParameterType type);                 // "color", "float", "boolean", "point"
 

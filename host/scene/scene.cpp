@@ -42,6 +42,29 @@ unsigned emitter_traits(unsigned kind) {
     return all[kind];
 }
 
+const char *camera_name(unsigned kind) {
+#define OPAL_CAMERA_NAME(name, record, traits) #name,
+    static const char *const names[] = {OPAL_CAMERAS(OPAL_CAMERA_NAME)};
+#undef OPAL_CAMERA_NAME
+    return names[kind];
+}
+
+std::string camera_text(const Camera &camera) {
+    std::string text = camera_name(camera.kind);
+    switch (camera.kind) {
+#define OPAL_NUMBER_TEXT(type, name, xml, initial, range, meaning) text += fmt::format(", " xml " {:g}", own.name);
+#define OPAL_CAMERA_TEXT(name, record, traits)                                                                         \
+    case CAMERA_##name: {                                                                                              \
+        [[maybe_unused]] const auto &own = camera.name;                                                                \
+        OPAL_CAMERA_##name(OPAL_NUMBER_TEXT) break;                                                                    \
+    }
+        OPAL_CAMERAS(OPAL_CAMERA_TEXT)
+#undef OPAL_CAMERA_TEXT
+#undef OPAL_NUMBER_TEXT
+    }
+    return text;
+}
+
 const Light *light_missed_by_bsdfs(const SceneDescription &scene) {
     for (const Light &light : scene.lights)
         if (!can_be_met(light.kind()))

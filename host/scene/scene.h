@@ -3,22 +3,25 @@
 
 #include "base/color.h"
 #include "base/math.h"
+#include "cameras/list.h"
 #include "scene/emitters.h"
 #include "scene/parameters.h"
 #include "scene/place.h"
+#include "scene/shapes.h"
 #include "scene/strategy.h"
 #include "shared/types.h"
 
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 namespace opal {
 
-const char *bsdf_name(unsigned kind); // as the XML gives it, "diffuse"; kind: BSDF_*
-unsigned bsdf_traits(unsigned kind);  // OPAL_SMOOTH and so on, as bits; 0 of a kind that leads to others
+// Names of kinds, as the XML gives them: "diffuse".
+const char *bsdf_name(unsigned kind);   // kind: BSDF_*
+unsigned bsdf_traits(unsigned kind);    // OPAL_SMOOTH and so on, as bits; 0 of a kind that leads to others
+const char *camera_name(unsigned kind); // kind: CAMERA_*
 
 // A material: the record of its kind, ready for the device but for the places of the BSDFs that it leads to. By default
 // a grey diffuse one.
@@ -36,22 +39,9 @@ struct Bsdf {
     template <class Record> Record as() const { return record_of<Record>(words); } // is<Record>() must hold
 };
 
-struct TriangleMesh {
-    std::vector<Vec3> positions; // world space
-    std::vector<Vec3> normals;   // world space, unit; may be empty
-    struct Corner {
-        unsigned position, normal;
-    };                                            // indices; normal OPAL_NONE: the geometric normal
-    std::vector<std::array<Corner, 3>> triangles; // degenerate ones already dropped
-};
-
-struct Parallelogram {
-    Vec3 origin, u, v; // world space; front side u x v
-};
-
 struct Mesh {
     std::string name; // file name or given name
-    std::variant<TriangleMesh, Parallelogram> shape;
+    Shape shape;
     Bsdf bsdf;
     std::optional<Color> radiance; // emitted by its area emitter, W / (m^2 sr)
     SourcePlace place;
@@ -64,13 +54,23 @@ struct Filter {
 };
 
 struct Camera {
+    uint kind = CAMERA_perspective;
+    // The parameters of each kind, as `perspective.fov`, with the defaults of cl/cameras/list.h.
+#define OPAL_CAMERA_NUMBER(type, name, xml, initial, range, meaning) double name = initial;
+#define OPAL_CAMERA_NUMBERS(name, record, traits)                                                                      \
+    struct {                                                                                                           \
+        OPAL_CAMERA_##name(OPAL_CAMERA_NUMBER)                                                                         \
+    } name;
+    OPAL_CAMERAS(OPAL_CAMERA_NUMBERS)
+#undef OPAL_CAMERA_NUMBERS
+#undef OPAL_CAMERA_NUMBER
     Transform to_world;
     int width = 1280, height = 720;
-    double fov = 30;                         // full horizontal angle, degrees
     double near_clip = 1e-4, far_clip = 1e4; // planar, camera space
     Filter filter;
     SourcePlace place;
 };
+std::string camera_text(const Camera &camera); // its kind and parameters: "perspective, fov 30"
 
 struct SimpleLight { // the one light of integrator `simple`
     Vec3 position;

@@ -19,10 +19,23 @@ struct Axis {
     std::string name; // as typed: "emitter-choice"
     std::string help;
     std::span<const Choice> choices; // index = CHOICE_* value
+    unsigned needs = 0;              // OPAL_NEEDS_*: what must be there for it to matter
 };
 
 std::span<const Axis> axes();                     // index = AXIS_* value
 int find_choice(int axis, std::string_view name); // throws Error "unknown mis 'x'; available: balance, ..."
+
+// A row of cl/integrators/list.h.
+struct IntegratorTraits {
+    const char *name; // as the list spells it: "direct_lighting"
+    unsigned asks;    // OPAL_ASKS_BSDFS and so on
+    unsigned axes;    // a bit for each axis that it reads, beside `sampler`, which all read
+
+    bool has(unsigned trait) const { return (asks & trait) != 0; }
+    bool reads(int axis) const { return axis == AXIS_sampler || (axes >> axis & 1u) != 0; }
+};
+
+std::span<const IntegratorTraits> integrators(); // index = CHOICE_integrator_* value
 
 enum class MathMode { precise, fast, double_precision };
 
@@ -47,5 +60,19 @@ struct Strategy {
     int operator[](int axis) const { return choices[axis]; }
     int &operator[](int axis) { return choices[axis]; }
 };
+
+inline const IntegratorTraits &integrator_of(const Strategy &strategy) {
+    return integrators()[static_cast<std::size_t>(strategy[AXIS_integrator])];
+}
+
+// Whether --mis one-sample means something: there are both kinds of samples, and an integrator that can take one.
+bool can_take_one_sample(const Strategy &strategy);
+
+// Whether directions are drawn: an integrator that asks no material needs another --hemisphere than `material`.
+bool has_hemisphere(const Strategy &strategy);
+
+// Whether points on emitters are sampled. An integrator that OPAL_ASKS_LIGHTS finds them by BSDF samples alone
+// otherwise.
+bool samples_emitters(const Strategy &strategy);
 
 } // namespace opal

@@ -59,8 +59,8 @@ void judge(const HostRay &ray, const std::vector<SlotTriangle> &triangles, const
 
 std::vector<SlotTriangle> triangles_by_slot(const FlatScene &scene) {
     std::vector<SlotTriangle> triangles;
-    for (uint slot = 0; slot < 8 * scene.blocks.size(); slot++)
-        if (const TriangleBlock &block = scene.blocks[slot / 8]; block.id[slot % 8] != OPAL_NONE) {
+    for (uint slot = 0; slot < 8 * scene.triangle_blocks.size(); slot++)
+        if (const TriangleBlock &block = scene.triangle_blocks[slot / 8]; block.id[slot % 8] != OPAL_NONE) {
             SlotTriangle triangle{slot, {}};
             for (int c = 0; c < 3; c++)
                 triangle.corners[size_t(c)] = {block.vertex[c][0][slot % 8], block.vertex[c][1][slot % 8],

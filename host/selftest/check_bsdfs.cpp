@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace opal {
 
@@ -107,28 +108,34 @@ bool is_seen_from_behind(KernelProbe &probe, unsigned id) {
     return std::any_of(begin, begin + std::ptrdiff_t(3 * drawn.stride), [](float weight) { return weight > 0; });
 }
 
-// What a discrete BSDF must do with light from wi.
+// A boundary between two media, seen from wi: indices of refraction on that side and beyond. Nothing for kinds whose
+// law is not known here.
 struct Boundary {
-    bool front_only;  // a mirror: black from behind
-    double near, far; // indices of refraction on the side of wi, and beyond; 0 beyond a mirror
+    double near, far;
 };
-Boundary boundary_of(const Bsdf &bsdf, Vec3 wi) {
-    if (bsdf.is<bsdf_mirror_record>())
-        return {true, 1, 0};
+std::optional<Boundary> boundary_of(const Bsdf &bsdf, Vec3 wi) {
+    if (!bsdf.is<bsdf_dielectric_record>())
+        return {};
     const auto dielectric = bsdf.as<bsdf_dielectric_record>();
     const double inside = dielectric.int_ior.value, outside = dielectric.ext_ior.value;
-    return wi.z > 0 ? Boundary{false, outside, inside} : Boundary{false, inside, outside};
+    return wi.z > 0 ? Boundary{outside, inside} : Boundary{inside, outside};
 }
 
-double discrete_error(const Planes &drawn, size_t i, Vec3 wi, const Boundary &boundary) {
-    const Vec3 wo = drawn.vec3(BSDF_WO_X, i), mirrored = {-wi.x, -wi.y, wi.z};
-    const double weight = drawn.at(BSDF_WEIGHT_R, i);
+// Where sample i goes, off from the mirrored direction or from the one that is refracted by the eta it states.
+double direction_error(const Planes &drawn, size_t i, Vec3 wi) {
+    const Vec3 wo = drawn.vec3(BSDF_WO_X, i);
     if (wo.z * wi.z > 0)
-        return std::max(length(wo - mirrored), std::abs(weight - (boundary.front_only && wi.z < 0 ? 0 : 1)));
-    const double eta = boundary.far / boundary.near;
-    const Vec3 refracted = {-wi.x / eta, -wi.y / eta,
-                            -std::copysign(std::sqrt(1 - (wi.x * wi.x + wi.y * wi.y) / (eta * eta)), wi.z)};
-    return std::max(length(wo - refracted), std::abs(weight - 1 / (eta * eta)));
+        return length(wo - Vec3{-wi.x, -wi.y, wi.z});
+    const double eta = drawn.at(BSDF_ETA, i);
+    const double cosine = std::sqrt(1 - (wi.x * wi.x + wi.y * wi.y) / (eta * eta));
+    return length(wo - Vec3{-wi.x / eta, -wi.y / eta, -std::copysign(cosine, wi.z)});
+}
+
+// What all samples of a lossless boundary carry, which is all power, and the eta of those that are refracted.
+double boundary_error(const Planes &drawn, size_t i, Vec3 wi, const Boundary &boundary) {
+    const bool refracted = drawn.at(BSDF_WO_Z, i) * wi.z < 0;
+    const double eta = refracted ? boundary.far / boundary.near : 1;
+    return std::max(std::abs(double(drawn.at(BSDF_WEIGHT_R, i)) - 1), std::abs(drawn.at(BSDF_ETA, i) / eta - 1));
 }
 
 // From both sides: where a discrete BSDF sends light, with which weight, and how often it reflects.
@@ -138,16 +145,27 @@ Findings check_discrete(KernelProbe &probe, unsigned id, const Material &materia
     for (double degrees : {1.0, 40.0, 60.0, 80.0, 100.0, 120.0, 150.0, 179.0}) {
         const std::string subject = fmt::format("{} at {:g} degrees", material.name, degrees);
         const Vec3 wi = direction_at(degrees);
-        const Boundary boundary = boundary_of(material.bsdf, wi);
+        const std::optional<Boundary> boundary = boundary_of(material.bsdf, wi);
         const Planes drawn = probe.bsdf_sample(id, wi, numbers);
         double error = 0, reflected = 0;
+        stats::Moments weights;
         for (size_t i = 0; i < drawn.count; i++) {
+            weights.add(drawn.at(BSDF_WEIGHT_R, i));
             reflected += drawn.at(BSDF_WO_Z, i) * wi.z > 0;
-            error = worst_of(error, discrete_error(drawn, i, wi, boundary));
+            if (drawn.at(BSDF_WEIGHT_R, i) > 0)
+                error = worst_of(error, direction_error(drawn, i, wi));
+            if (boundary)
+                error = worst_of(error, boundary_error(drawn, i, wi, *boundary));
+            if (material.bsdf.is<bsdf_mirror_record>())
+                error = worst_of(error, std::abs(drawn.at(BSDF_WEIGHT_R, i) - (wi.z > 0)));
         }
         findings.push_back(at_most("mirror, dielectric: direction and weight, off by", error, 3e-5, subject));
-        const double reflectance =
-            boundary.far > 0 ? fresnel_reflectance(std::abs(wi.z), boundary.near, boundary.far) : 1;
+        const double rounding = 1e-6; // weights are floats
+        const double albedo = weights.mean() - 5 * std::sqrt(weights.variance_of_mean()) - rounding;
+        findings.push_back(at_most("BSDFs: albedo less 5 standard errors", albedo, 1, subject));
+        if (!boundary)
+            continue;
+        const double reflectance = fresnel_reflectance(std::abs(wi.z), boundary->near, boundary->far);
         if (reflectance < 1) // at total reflection rounding may leave a little to refraction
             findings.push_back(p_value("dielectric: reflectance, smallest p",
                                        stats::binomial_test(reflected, double(drawn.count), reflectance).p_value,

@@ -24,7 +24,7 @@ SceneDescription camera_at(Vec3 origin, Vec3 target) {
     SceneDescription scene;
     scene.camera.to_world = Transform::look_at(origin, target, {0, 0, 1});
     scene.camera.width = scene.camera.height = 1;
-    scene.camera.fov = 1e-3;
+    scene.camera.perspective.fov = 1e-3;
     return scene;
 }
 

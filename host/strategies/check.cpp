@@ -28,24 +28,35 @@ void check_numbers(const Strategy &strategy) {
         refuse("max-depth 0", "the shortest path has one segment and shows the lights");
 }
 
+// The integrators that have a trait: "a" or "a or b".
+std::string names_of_integrators(unsigned trait) {
+    std::vector<std::string> names;
+    for (const IntegratorTraits &integrator : integrators())
+        if (integrator.has(trait))
+            names.push_back(integrator.name);
+    return fmt::format("{}", fmt::join(names, " or "));
+}
+
 void check_mis(const Strategy &strategy) {
     if (strategy[AXIS_mis] != CHOICE_mis_one_sample)
         return;
-    if (strategy[AXIS_integrator] != CHOICE_integrator_direct_lighting)
-        refuse("mis one-sample without integrator direct_lighting",
+    if (!integrator_of(strategy).has(OPAL_ONE_SAMPLE_MIS))
+        refuse("mis one-sample without integrator " + names_of_integrators(OPAL_ONE_SAMPLE_MIS),
                "one sample of either kind cannot be counted in and go on as a path; available: balance, power");
-    if (strategy[AXIS_lighting] != CHOICE_lighting_mis)
+    if (!can_take_one_sample(strategy))
         refuse("mis one-sample without lighting mis", "there is only one kind of sample, and nothing to choose from");
 }
 
 void check_lighting(const SceneDescription &scene) {
     const Strategy &strategy = scene.strategy;
-    int integrator = strategy[AXIS_integrator];
-    if (integrator == CHOICE_integrator_whitted && strategy[AXIS_lighting] != CHOICE_lighting_emitter)
-        refuse("integrator whitted without lighting emitter", "it finds light by emitter sampling alone");
-    bool follows = integrator == CHOICE_integrator_path || integrator == CHOICE_integrator_direct_lighting;
+    const IntegratorTraits &integrator = integrator_of(strategy);
+    if (!integrator.has(OPAL_ASKS_LIGHTS))
+        return;
+    if (!integrator.reads(AXIS_lighting) && strategy[AXIS_lighting] != CHOICE_lighting_emitter)
+        refuse(fmt::format("integrator {} without lighting emitter", integrator.name),
+               "it finds light by emitter sampling alone");
     const Light *missed = light_missed_by_bsdfs(scene);
-    if (!follows || strategy[AXIS_lighting] != CHOICE_lighting_bsdf || !missed)
+    if (samples_emitters(strategy) || !missed)
         return;
     const std::string kind = emitter_name(missed->kind());
     if (!has_hit_light(scene))
@@ -58,15 +69,17 @@ void check_lighting(const SceneDescription &scene) {
 
 void check_strategy(const SceneDescription &scene) {
     const Strategy &strategy = scene.strategy;
-    int integrator = strategy[AXIS_integrator];
+    const IntegratorTraits &integrator = integrator_of(strategy);
     check_numbers(strategy);
     check_mis(strategy);
     check_lighting(scene);
-    if (integrator == CHOICE_integrator_ao && strategy[AXIS_hemisphere] == CHOICE_hemisphere_material)
-        refuse("integrator ao with hemisphere material", "it asks no material; available: uniform, cosine");
-    if (integrator == CHOICE_integrator_simple && scene.simple_light.energy == Color{})
-        refuse("integrator simple", "the scene gives it no light: its integrator has no 'position' and 'energy'");
-    if (integrator == CHOICE_integrator_path && strategy[AXIS_rr] == CHOICE_rr_off && strategy.max_depth == no_limit)
+    if (!has_hemisphere(strategy))
+        refuse(fmt::format("integrator {} with hemisphere material", integrator.name),
+               "it asks no material; available: uniform, cosine");
+    if (integrator.has(OPAL_ASKS_OWN_LIGHT) && scene.simple_light.energy == Color{})
+        refuse(fmt::format("integrator {}", integrator.name),
+               "the scene gives it no light: its integrator has no 'position' and 'energy'");
+    if (integrator.reads(AXIS_rr) && strategy[AXIS_rr] == CHOICE_rr_off && strategy.max_depth == no_limit)
         warn("rr off and no max-depth: a path ends only where it leaves the scene or carries nothing");
 }
 

@@ -43,7 +43,7 @@ std::map<std::string, std::string> overrides_of(const std::string &text) {
 // Finds all combinations. Copies the scene without its shapes, so that copies are cheap.
 class Combinations {
 public:
-    explicit Combinations(const SceneDescription &scene) : scene_(scene), own_(scene.strategy.choices) {
+    explicit Combinations(const SceneDescription &scene) : scene_(scene), integrator_(integrator_of(scene.strategy)) {
         size_t emitters = scene.lights.size();
         for (Mesh &mesh : scene_.meshes) {
             const auto *triangles = std::get_if<TriangleMesh>(&mesh.shape);
@@ -57,40 +57,40 @@ public:
     }
 
     std::vector<Choices> all() {
-        extend(AXIS_integrator + 1, own_);
+        extend(AXIS_integrator + 1, scene_.strategy.choices);
         return found_;
     }
 
 private:
     SceneDescription scene_;
-    Choices own_;
+    const IntegratorTraits &integrator_;
     bool many_emitters_ = false, light_triangles_ = false, diffuse_ = false, refracts_ = false;
     std::vector<Choices> found_;
 
     // Axes are decided in order. Whether an axis matters depends on the choices of the axes before it.
-    bool matters(int axis, const Choices &c) const {
-        const int integrator = c[AXIS_integrator];
-        const bool path = integrator == CHOICE_integrator_path,
-                   direct = integrator == CHOICE_integrator_direct_lighting;
-        const bool samples_lights =
-            integrator == CHOICE_integrator_whitted || ((path || direct) && c[AXIS_lighting] != CHOICE_lighting_bsdf);
-        switch (axis) {
-        case AXIS_lighting:
-            return path || direct;
-        case AXIS_mis:
-            return (path || direct) && c[AXIS_lighting] == CHOICE_lighting_mis;
-        case AXIS_hemisphere:
-            return integrator == CHOICE_integrator_ao ||
-                   (diffuse_ && (path || (direct && c[AXIS_lighting] != CHOICE_lighting_emitter)));
-        case AXIS_emitter_choice:
-            return samples_lights && many_emitters_;
-        case AXIS_triangle_choice:
-            return samples_lights && light_triangles_;
-        case AXIS_rr:
-            return path && scene_.strategy.max_depth > scene_.strategy.rr_depth;
-        default:
-            return true;
-        }
+    bool matters(int axis, const Choices &chosen) const {
+        Strategy strategy = scene_.strategy;
+        strategy.choices = chosen;
+        return integrator_.reads(axis) && (axes()[axis].needs & ~met_needs(strategy)) == 0;
+    }
+
+    // What the scene and the strategy have: OPAL_NEEDS_*.
+    unsigned met_needs(const Strategy &strategy) const {
+        const bool diffuse_samples =
+            !integrator_.has(OPAL_ASKS_BSDFS) ||
+            (diffuse_ && (integrator_.has(OPAL_FOLLOWS_PATHS) || strategy[AXIS_lighting] != CHOICE_lighting_emitter));
+        const std::pair<unsigned, bool> needs[] = {
+            {OPAL_NEEDS_MIS, strategy[AXIS_lighting] == CHOICE_lighting_mis},
+            {OPAL_NEEDS_EMITTER_SAMPLES, samples_emitters(strategy)},
+            {OPAL_NEEDS_MANY_EMITTERS, many_emitters_},
+            {OPAL_NEEDS_MESH_LIGHTS, light_triangles_},
+            {OPAL_NEEDS_DIFFUSE_SAMPLES, diffuse_samples},
+            {OPAL_NEEDS_ROULETTE, strategy.max_depth > strategy.rr_depth},
+        };
+        unsigned met = 0;
+        for (const auto &[need, is_met] : needs)
+            met |= is_met ? need : 0;
+        return met;
     }
 
     bool is_unbiased_and_ends(int axis, int choice) const {

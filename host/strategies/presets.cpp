@@ -14,22 +14,30 @@ namespace {
 struct PresetRow {
     std::string name; // as in Candidate
     const char *label;
-    bool path, direct; // the integrators it is for
-    bool only_all;     // not in `course`
+    bool only_all; // not in `course`
 };
 
+// Each is for the integrators that read its axes.
 const std::vector<PresetRow> preset_rows = {
-    {"lighting=bsdf,hemisphere=uniform", "uniform hemisphere", true, true, false},
-    {"lighting=bsdf,hemisphere=cosine", "cosine hemisphere", true, true, false},
-    {"lighting=emitter", "emitter sampling (NEE)", true, true, false},
-    {"lighting=mis,mis=one-sample", "MIS, one sample", false, true, false},
-    {"lighting=mis,mis=balance", "MIS, balance heuristic", true, true, false},
-    {"lighting=mis,mis=power", "MIS, power heuristic", true, true, false},
-    {"lighting=mis,mis=power,emitter-choice=power", "MIS, power; emitters by power", true, true, true},
-    {"lighting=mis,mis=power,sampler=stratified", "MIS, power; stratified", true, true, true},
-    {"lighting=mis,mis=power,sampler=sobol", "MIS, power; Sobol", true, true, true},
-    {"lighting=mis,mis=power,rr=throughput", "MIS, power; roulette by throughput", true, false, true},
+    {"lighting=bsdf,hemisphere=uniform", "uniform hemisphere", false},
+    {"lighting=bsdf,hemisphere=cosine", "cosine hemisphere", false},
+    {"lighting=emitter", "emitter sampling (NEE)", false},
+    {"lighting=mis,mis=one-sample", "MIS, one sample", false},
+    {"lighting=mis,mis=balance", "MIS, balance heuristic", false},
+    {"lighting=mis,mis=power", "MIS, power heuristic", false},
+    {"lighting=mis,mis=power,emitter-choice=power", "MIS, power; emitters by power", true},
+    {"lighting=mis,mis=power,sampler=stratified", "MIS, power; stratified", true},
+    {"lighting=mis,mis=power,sampler=sobol", "MIS, power; Sobol", true},
+    {"lighting=mis,mis=power,rr=throughput", "MIS, power; roulette by throughput", true},
 };
+
+bool is_for(const PresetRow &row, const IntegratorTraits &integrator) {
+    for (const std::string &part : split(row.name, ','))
+        for (int axis = 0; axis < AXIS_COUNT; axis++)
+            if (part.starts_with(axes()[axis].name + "=") && !integrator.reads(axis))
+                return false;
+    return integrator.has(OPAL_ONE_SAMPLE_MIS) || !row.name.ends_with("mis=one-sample");
+}
 
 class CandidateList {
 public:
@@ -45,17 +53,15 @@ public:
     }
 
     void add_preset(bool every) {
-        const int integrator = scene_.strategy[AXIS_integrator];
-        const bool path = integrator == CHOICE_integrator_path,
-                   direct = integrator == CHOICE_integrator_direct_lighting;
-        if (!path && !direct)
+        const IntegratorTraits &integrator = integrator_of(scene_.strategy);
+        if (!integrator.reads(AXIS_lighting))
             throw Error(fmt::format(
                 "the presets course and all compare ways to find light; integrator {} has none: name strategies, "
                 "e.g. --strategies hemisphere=uniform hemisphere=cosine, or take --integrator path",
-                axes()[AXIS_integrator].choices[size_t(integrator)].name));
+                axes()[AXIS_integrator].choices[size_t(scene_.strategy[AXIS_integrator])].name));
         const bool misses_lights = light_missed_by_bsdfs(scene_) != nullptr;
         for (const PresetRow &row : preset_rows)
-            if ((path ? row.path : row.direct) && (every || !row.only_all) &&
+            if (is_for(row, integrator) && (every || !row.only_all) &&
                 !(misses_lights && row.name.starts_with("lighting=bsdf")))
                 add(row.name, row.label);
     }

@@ -15,6 +15,9 @@ TEST_CASE("Sobol points lie one in each elementary interval", "[numbers]") {
 TEST_CASE("Strata are met once each, in an order of their own", "[numbers][stat]") {
     require_all_pass(check_stratified(Sources::embedded(), test_seed(101)));
 }
+TEST_CASE("Every dimension of a path has a key of its own", "[numbers]") {
+    require_all_pass(check_dimensions(Sources::embedded(), 0));
+}
 TEST_CASE("Pixels, samples, dimensions and seeds are uncorrelated", "[numbers][stat]") {
     require_all_pass(check_independence(Sources::embedded(), test_seed(102)));
 }

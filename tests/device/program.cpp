@@ -27,7 +27,7 @@ TEST_CASE("In tests a warning is an error", "[program]") {
 
 TEST_CASE("The records shared with the device have one size", "[program]") {
     const cl::Program built = program_of(
-        "#include \"shared/types.h\"\n#include \"bsdfs/list.h\"\n#include \"emitters/list.h\"\n"
+        "#include \"shapes/list.h\"\n#include \"bsdfs/list.h\"\n#include \"emitters/list.h\"\n"
         "kernel void sizes(global uint *out) {\n"
         "    out[0] = sizeof(BvhNode); out[1] = sizeof(TriangleBlock); out[2] = sizeof(Settings);\n"
         "    out[3] = sizeof(bsdf_phong_record); out[4] = sizeof(EmitterRecord); out[5] = sizeof(LightTriangle);\n"

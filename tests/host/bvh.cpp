@@ -170,7 +170,9 @@ double hit_tree(const Ray &ray, const Bvh &bvh) {
         const uint at = stack.back();
         stack.pop_back();
         if (at & OPAL_LEAF) {
-            const TriangleBlock &block = bvh.blocks[at & ~OPAL_LEAF];
+            if ((at >> OPAL_SHAPE_SHIFT & OPAL_SHAPE_BITS) != SHAPE_triangle)
+                continue;
+            const TriangleBlock &block = bvh.blocks[at & OPAL_BLOCK_BITS];
             const auto vertex = [&block](int corner, int place) {
                 return Vec3{block.vertex[corner][0][place], block.vertex[corner][1][place],
                             block.vertex[corner][2][place]};
@@ -219,11 +221,15 @@ struct Structure {
     const Bvh &bvh;
     bool whole;
     std::vector<int> triangle_seen = std::vector<int>(soup.corners.size());
-    std::size_t nodes = 0, blocks = 0;
+    std::vector<int> other_seen = std::vector<int>(soup.others.size()); // in the order of soup.others
+    std::size_t nodes = 0, blocks = 0, other_blocks = 0;
 
     Box visit(uint at) {
-        if (at & OPAL_LEAF)
-            return visit_block(bvh.blocks.at(at & ~OPAL_LEAF));
+        if (at & OPAL_LEAF) {
+            const uint shape = at >> OPAL_SHAPE_SHIFT & OPAL_SHAPE_BITS, block = at & OPAL_BLOCK_BITS;
+            return shape == SHAPE_triangle ? visit_block(bvh.blocks.at(block))
+                                           : visit_others(shape, bvh.other_blocks.at(shape).at(block));
+        }
         nodes++;
         Box all = Box::empty();
         const BvhNode &node = bvh.nodes.at(at);
@@ -241,6 +247,22 @@ struct Structure {
             all.add(box);
         }
         return all;
+    }
+
+    Box visit_others(uint shape, const BlockIds &ids) {
+        other_blocks++;
+        Box box = Box::empty();
+        for (std::size_t place = 0; place < ids.size() && ids[place] != OPAL_NONE; place++) {
+            const auto other = std::find_if(soup.others.begin(), soup.others.end(),
+                                            [&](const BoundedPrimitive &p) { return p.id == ids[place]; });
+            if (shape_of(ids[place]) != shape || other == soup.others.end())
+                FAIL("primitive " << ids[place] << " in a block of shape " << shape);
+            other_seen.at(std::size_t(other - soup.others.begin()))++;
+            box.add(other->box);
+        }
+        if (ids[0] == OPAL_NONE)
+            FAIL("an empty block");
+        return box;
     }
 
     Box visit_block(const TriangleBlock &block) {
@@ -270,11 +292,16 @@ struct Structure {
 };
 
 void check_structure(const TriangleSoup &soup, const Bvh &bvh) {
-    const bool whole = split_primitives(soup).size() == soup.corners.size();
+    const bool whole = split_primitives(soup).size() == soup.corners.size() + soup.others.size();
     Structure structure{soup, bvh, whole};
     structure.visit(0);
     CHECK(structure.nodes == bvh.nodes.size());
     CHECK(structure.blocks == (soup.corners.empty() ? 0 : bvh.blocks.size())); // none at all still has an empty one
+    std::size_t other_blocks = 0;
+    for (const auto &blocks : bvh.other_blocks)
+        other_blocks += blocks.size();
+    CHECK(structure.other_blocks == other_blocks);
+    CHECK(structure.other_seen == std::vector<int>(soup.others.size(), 1));
     if (whole)
         CHECK(structure.triangle_seen == std::vector<int>(soup.corners.size(), 1));
     else
@@ -299,6 +326,22 @@ void cut_in_halves(BinaryTree &tree, uint index, bool ordered) {
     tree.nodes[node.left + 1] = {Box::empty(), node.first + half, node.count - half, 0};
     cut_in_halves(tree, tree.nodes[index].left, ordered);
     cut_in_halves(tree, tree.nodes[index].left + 1, ordered);
+}
+
+// The soup with `count` primitives of two other shapes, each around a vertex of it or anywhere.
+TriangleSoup with_others(TriangleSoup soup, unsigned count) {
+    Random random(count);
+    std::array<uint, 2> found{};
+    for (unsigned i = 0; i < count; i++) {
+        const uint kind = random.bits() % 2;
+        const Point3f middle =
+            soup.vertices.empty() ? random.point(1) : soup.vertices[random.bits() % soup.vertices.size()];
+        Box box = Box::empty();
+        box.add(middle);
+        box.add(Point3f{0.9f * middle[0], 0.9f * middle[1], 0.9f * middle[2]});
+        soup.others.push_back({(SHAPE_triangle + 1 + kind) << OPAL_SHAPE_SHIFT | found[kind]++, box, 0});
+    }
+    return soup;
 }
 
 BinaryTree halves_of(const TriangleSoup &soup, bool ordered) {
@@ -356,6 +399,20 @@ TEST_CASE("the worst of trees has no more levels than a walk has room for", "[bv
     check_structure(soup, bvh);
     CHECK(levels_of(bvh) == OPAL_LEVELS); // it would have had 60
     check_against_brute_force(soup, 500);
+}
+
+TEST_CASE("no leaf mixes shapes, and each primitive is in one", "[bvh]") {
+    for (unsigned triangles : {0u, 1u, 5u, 60u, 3000u})
+        for (unsigned others : {1u, 2u, 7u, 9u, 100u, 2000u}) {
+            INFO(triangles << " triangles, " << others << " others");
+            const TriangleSoup soup = with_others(random_soup(triangles, 0.2f, triangles), others);
+            check_structure(soup, build_bvh(soup));
+        }
+    const TriangleSoup deep = with_others(nested_clusters(), 300); // a balanced tree takes the place of its depths
+    const Bvh bvh = build_bvh(deep);
+    check_structure(deep, bvh);
+    CHECK(levels_of(bvh) >= OPAL_LEVELS - 1); // the last level is kept for leaves of several shapes
+    check_against_brute_force(deep, 500);
 }
 
 TEST_CASE("the tree is the same whichever thread builds which part", "[bvh]") {
@@ -420,7 +477,7 @@ TEST_CASE("the parts of long triangles cover them, and make a cheaper tree that 
     CHECK(parts.size() < 3 * whole.size());
     std::vector<std::vector<Box>> boxes(soup.corners.size());
     for (const BuildPrimitive &part : parts)
-        boxes[part.triangle].push_back(part.box);
+        boxes[part.id].push_back(part.box);
     Random random(7);
     for (int i = 0; i < 100000; i++) {
         const uint id = random.bits() % uint(soup.corners.size());

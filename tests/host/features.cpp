@@ -68,14 +68,14 @@ TEST_CASE("features are what the scene and the strategy ask for, each with a rea
         return names;
     };
     using Names = std::set<std::string>;
-    CHECK(on(description) ==
-          Names{"bsdf_diffuse", "bsdf_mirror", "emitter_mesh", "emitter_point", "listed", "many_emitters"});
+    CHECK(on(description) == Names{"bsdf_diffuse", "bsdf_mirror", "camera_perspective", "emitter_mesh", "emitter_point",
+                                   "listed", "many_emitters", "shape_triangle"});
     CHECK(flatten(description, 8).features.list[FEATURE_bsdf_mirror].reason == "1 of 2 meshes");
 
     SECTION("nothing of BSDFs and emitters for the integrators that ask neither") {
         for (int integrator : {CHOICE_integrator_normals, CHOICE_integrator_ao, CHOICE_integrator_simple}) {
             description.strategy[AXIS_integrator] = integrator;
-            CHECK(on(description) == Names{"listed"});
+            CHECK(on(description) == Names{"camera_perspective", "listed", "shape_triangle"});
         }
     }
     SECTION("no points where light is found by hitting it") {

@@ -56,8 +56,8 @@ TEST_CASE("a scene of nothing", "[flatten]") {
         const FlatScene scene = flatten(scene_of({}), lanes);
         CHECK(scene.scale == 1);
         CHECK(scene.triangles.empty());
-        CHECK(scene.blocks.size() == 1);
-        CHECK(scene.blocks[0].id[0] == OPAL_NONE);
+        CHECK(scene.triangle_blocks.size() == 1);
+        CHECK(scene.triangle_blocks[0].id[0] == OPAL_NONE);
         CHECK(scene.settings.emitter_count == 0);
         CHECK(scene.features[FEATURE_tree] == (lanes == 1));
     }
@@ -69,24 +69,26 @@ TEST_CASE("the camera's columns, film and clips", "[flatten]") {
     camera.to_world.rows = {{{-2, 0, 0, 1}, {0, 4, 0, 2}, {0, 0, 2, 3}, {0, 0, 0, 1}}}; // mirrored, stretched, moved
     camera.width = 400;
     camera.height = 100;
-    camera.fov = 90;
+    camera.perspective.fov = 90;
     camera.near_clip = 0.5;
     camera.far_clip = 1e300;
-    const Settings s = flatten(scene, 8).settings;
-    CHECK((s.camera_origin[0] == 0.25f && s.camera_origin[1] == 0.5f && s.camera_origin[2] == 0.75f));
-    CHECK((s.camera_left[0] == -1 && s.camera_up[1] == 2 && s.camera_forward[2] == 1));
-    CHECK(s.tan_half_x == Approx(1));
-    CHECK(s.tan_half_y == Approx(0.25));
-    CHECK(s.near_clip == 0.5f * 2 / 4);
-    CHECK(std::isfinite(s.far_clip));
-    CHECK((s.width == 400 && s.height == 100));
+    const FlatScene flat = flatten(scene, 8);
+    REQUIRE(flat.cameras.size() == 1);
+    const CameraRecord &record = flat.cameras[0];
+    CHECK((record.origin[0] == 0.25f && record.origin[1] == 0.5f && record.origin[2] == 0.75f));
+    CHECK((record.left[0] == -1 && record.up[1] == 2 && record.forward[2] == 1));
+    CHECK(record.own.perspective.tan_half_x == Approx(1));
+    CHECK(record.own.perspective.tan_half_y == Approx(0.25));
+    CHECK(record.near_clip == 0.5f * 2 / 4);
+    CHECK(std::isfinite(record.far_clip));
+    CHECK((flat.settings.width == 400 && flat.settings.height == 100));
 
     // The point at camera depth near_clip along a film direction, by both ways.
     const double sx = 0.1, sy = 0.7, x = (1 - 2 * sx) * 1, y = (1 - 2 * sy) * 0.25;
     const Vec3 world = Vec3{-2 * x, 4 * y, 2} * 0.5;
     for (int i = 0; i < 3; i++) {
-        const double d = s.camera_left[i] * x + s.camera_up[i] * y + s.camera_forward[i];
-        CHECK(s.near_clip * d == Approx(world[i] / 4));
+        const double d = record.left[i] * x + record.up[i] * y + record.forward[i];
+        CHECK(record.near_clip * d == Approx(world[i] / 4));
     }
 }
 
@@ -122,7 +124,7 @@ std::vector<std::array<std::array<float, 3>, 3>> triangles_of_face(const FlatSce
         expected.push_back({at(3), at(2), at(1)});
     const uint slot = scene.settings.face_list_slot + 2 * i;
     for (uint which = 0; which < 2; which++) {
-        const bool there = scene.blocks[(slot + which) / 8].id[(slot + which) % 8] != OPAL_NONE;
+        const bool there = scene.triangle_blocks[(slot + which) / 8].id[(slot + which) % 8] != OPAL_NONE;
         CHECK(there == (which < expected.size()));
         for (int corner = 0; corner < 3 && there; corner++)
             CHECK(vertex(scene, slot + which, corner) == expected[which][size_t(corner)]);
@@ -216,7 +218,7 @@ TEST_CASE("triangles that float makes degenerate are dropped everywhere and coun
     CHECK(scene.triangles.size() == 2);
     CHECK(scene.light_triangles.size() == 2);
     uint kept = 0;
-    for (const TriangleBlock &block : scene.blocks)
+    for (const TriangleBlock &block : scene.triangle_blocks)
         kept += uint(std::count_if(block.id, block.id + 8, [](uint id) { return id != OPAL_NONE; }));
     CHECK(kept == 2);
 
@@ -280,9 +282,9 @@ TEST_CASE("the largest triangles are listed beside the tree, each triangle is in
     CHECK(scene.face_vertices.size() == 3 * 4);
     REQUIRE(triangles_of_face(scene, 0).size() == 2);
     for (uint place = 0; place < 2; place++)
-        CHECK(scene.triangles[scene.blocks[scene.settings.face_list_slot / 8].id[place]].mesh == 1);
+        CHECK(scene.triangles[scene.triangle_blocks[scene.settings.face_list_slot / 8].id[place]].mesh == 1);
     std::vector<int> seen(scene.triangles.size());
-    for (const TriangleBlock &block : scene.blocks)
+    for (const TriangleBlock &block : scene.triangle_blocks)
         for (uint id : block.id)
             if (id != OPAL_NONE)
                 seen[id]++;

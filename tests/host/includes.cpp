@@ -51,7 +51,6 @@ const std::vector<Room> rooms = {
     {"strategies", {"base", "cl", "scene"}},
     {"bvh", {"base", "cl"}},
     {"flatten", {"base", "cl", "scene", "bvh"}},
-    {"flatten/emitters", {"base", "cl", "scene", "bvh", "flatten"}},
     {"device", {"base", "cl", "scene", "flatten"}},
     {"film", {"base", "cl", "image"}},
     {"render", {"base", "cl", "scene", "flatten", "device", "image", "stats", "film"}},
@@ -71,9 +70,8 @@ const std::vector<Room> rooms = {
                   "device",   "image",       "stats",   "plot",  "film",      "render",     "probe", "densities",
                   "selftest", "conformance", "compare", "bench", "extremes",  "sweep"}},
 };
-const std::set<std::string> without_opencl = {
-    "base", "image",  "stats", "plot", "scene", "read", "read/nori", "strategies", "bvh", "flatten", "flatten/emitters",
-    "film", "compare"};
+const std::set<std::string> without_opencl = {"base",      "image",      "stats", "plot",    "scene", "read",
+                                              "read/nori", "strategies", "bvh",   "flatten", "film",  "compare"};
 
 // The room that a path below host/ lies in: "read/nori" for read/nori/load.h.
 std::string room_of(const std::string &path) { return path.substr(0, path.find_last_of('/')); }
@@ -118,25 +116,29 @@ std::vector<std::string> problems_below(const std::string &top,
 
 // The floors of cl/, from the ground up: folders, and files that are floors of their own.
 const std::vector<Room> floors = {
-    {"shared", {}},
+    {"integrators/list.h", {}},
+    {"shared", {"integrators/list.h"}},
+    {"shapes/list.h", {"shared"}},
     {"bsdfs/list.h", {"shared"}},
     {"emitters/list.h", {"shared"}},
+    {"cameras/list.h", {"shared"}},
     {"textures/list.h", {"shared"}},
-    {"scene_tables.h", {"shared", "bsdfs/list.h", "emitters/list.h"}},
+    {"scene_tables.h", {"shared", "shapes/list.h", "bsdfs/list.h", "emitters/list.h", "cameras/list.h"}},
     {"core", {}},
     {"scene.cl", {"shared", "scene_tables.h", "core"}},
-    {"trace", {"shared", "core", "scene.cl"}},
     {"surface.cl", {"shared", "core", "scene.cl"}},
-    {"camera.cl", {"shared", "core", "scene.cl"}},
-    {"film", {"shared", "core", "scene.cl", "camera.cl"}},
+    {"shapes", {"shared", "shapes/list.h", "core", "scene.cl", "surface.cl"}},
+    {"trace", {"shared", "shapes/list.h", "core", "scene.cl", "shapes"}},
+    {"cameras", {"cameras/list.h", "core", "scene.cl"}},
+    {"film", {"shared", "core", "scene.cl", "cameras"}},
     {"textures", {"shared", "textures/list.h", "core", "scene.cl"}},
     {"parameters.cl", {"shared", "core", "scene.cl", "textures"}},
     {"bsdfs", {"shared", "bsdfs/list.h", "core", "scene.cl", "surface.cl", "parameters.cl"}},
-    {"emitters", {"shared", "emitters/list.h", "core", "scene.cl", "surface.cl"}},
-    {"integrators", {"shared", "core", "scene.cl", "trace", "surface.cl", "bsdfs", "emitters"}},
+    {"emitters", {"shared", "emitters/list.h", "core", "scene.cl", "surface.cl", "shapes"}},
+    {"integrators", {"shared", "core", "scene.cl", "surface.cl", "shapes", "trace", "bsdfs", "emitters"}},
     {"kernels",
-     {"shared", "bsdfs/list.h", "emitters/list.h", "core", "scene.cl", "trace", "surface.cl", "camera.cl", "film",
-      "bsdfs", "emitters", "integrators"}},
+     {"shared", "shapes/list.h", "bsdfs/list.h", "emitters/list.h", "cameras/list.h", "core", "scene.cl", "surface.cl",
+      "shapes", "trace", "cameras", "film", "bsdfs", "emitters", "integrators"}},
 };
 
 using Files = std::map<std::string, std::string>; // "core/math.cl" -> text

@@ -59,7 +59,7 @@ TEST_CASE_METHOD(LoadFixture, "defaults of everything are resolved", "[load]") {
     CHECK(scene.file == file());
     CHECK(scene.camera.width == 1280);
     CHECK(scene.camera.height == 720);
-    CHECK(scene.camera.fov == 30);
+    CHECK(scene.camera.perspective.fov == 30);
     CHECK(scene.camera.near_clip == 1e-4);
     CHECK(scene.camera.far_clip == 1e4);
     CHECK(scene.spp == 1);
@@ -215,7 +215,8 @@ TEST_CASE_METHOD(LoadFixture, "camera values that make no sense fail at their pl
           ":4:1: property 'width': must be at least 1 pixel");
     CHECK_THAT(property_error("camera", "perspective", "<integer name='height' value='-5'/>"),
                Catch::StartsWith(":4:1: "));
-    CHECK_THAT(property_error("camera", "perspective", "<float name='fov' value='180'/>"), Catch::StartsWith(":4:1: "));
+    CHECK(property_error("camera", "perspective", "<float name='fov' value='180'/>") ==
+          ":4:1: property 'fov': must be above 0 and below 180: full horizontal angle, degrees");
     CHECK_THAT(property_error("camera", "perspective", "<float name='fov' value='0'/>"), Catch::StartsWith(":4:1: "));
     CHECK_THAT(property_error("camera", "perspective", "<float name='farClip' value='1e-5'/>"),
                Catch::StartsWith(":4:1: "));
@@ -347,7 +348,7 @@ TEST_CASE_METHOD(LoadFixture, "an unknown property fails, or warns if lenient", 
     std::string body = "<camera type='perspective'>\n  <float name='fow' value='30'/></camera>" + light;
     CHECK_THAT(error_in(body),
                Catch::StartsWith(":3:3: unknown property 'fow' of camera 'perspective'; did you mean 'fov'? "));
-    CHECK(load(body, {.lenient = true}).camera.fov == 30);
+    CHECK(load(body, {.lenient = true}).camera.perspective.fov == 30);
     CHECK_THAT(warnings().back(), Catch::StartsWith(file() + ":3:3: unknown property 'fow'"));
     CHECK_THAT(error_in("<float name='fov' value='30'/>" + camera),
                Catch::StartsWith(":2:1: unknown property 'fov' of <scene>"));

@@ -51,6 +51,22 @@ TEST_CASE("axes and choices are the rows of the shared header, as typed", "[stra
         }
 }
 
+TEST_CASE("an integrator's row says which axes it reads, and its own name is a type in XML", "[strategy]") {
+    REQUIRE(integrators().size() == axes()[AXIS_integrator].choices.size());
+    for (const IntegratorTraits &integrator : integrators()) {
+        INFO(integrator.name);
+        CHECK(&integrators()[size_t(find_integrator(integrator.name).integrator)] == &integrator);
+        CHECK(integrator.axes >> AXIS_COUNT == 0);
+        CHECK(integrator.reads(AXIS_sampler));
+        CHECK_FALSE(integrator.reads(AXIS_integrator));
+        if (integrator.reads(AXIS_emitter_choice) || integrator.reads(AXIS_lighting))
+            CHECK(integrator.has(OPAL_ASKS_LIGHTS));
+    }
+    CHECK(integrators()[CHOICE_integrator_path].reads(AXIS_rr));
+    CHECK_FALSE(integrators()[CHOICE_integrator_direct_lighting].reads(AXIS_rr));
+    CHECK_FALSE(integrators()[CHOICE_integrator_whitted].reads(AXIS_lighting));
+}
+
 TEST_CASE("a choice is found with either dash, or fails with the list", "[strategy]") {
     CHECK(find_choice(AXIS_mis, "one-sample") == CHOICE_mis_one_sample);
     CHECK(find_choice(AXIS_mis, "one_sample") == CHOICE_mis_one_sample);

@@ -36,8 +36,8 @@ const std::vector<Control> furnaces = {
       "v3_scale(path->throughput, 1 / survives.probability)", "path->throughput"},
      "glass furnace",
      check_glass_furnace},
-    {{"eta inverted in the scaling of radiance", "bsdfs/dielectric.cl", "(1 - fresnel) * square(boundary.inverse_eta)",
-      "(1 - fresnel) * square(boundary.eta)"},
+    {{"eta inverted in the scaling of radiance", "integrators/steps.cl", "1 / square(sample.eta)",
+      "square(sample.eta)"},
      "glass furnace",
      check_glass_furnace},
     {{"rays leave on the normal's side always", "surface.cl", "copysign(s.ray_offset, v3_dot(s.normal, d))",
@@ -85,7 +85,7 @@ const std::vector<Control> lights = {
     {{"simple by the distance", "integrators/simple.cl", "cosine / distance2", "cosine * rsqrt(distance2)"},
      "point light",
      check_point_light},
-    {{"one corner's normal taken twice", "surface.cl", "v3_mad(vertex_normal(scene, corners.index[1]), u,",
+    {{"one corner's normal taken twice", "shapes/triangle.cl", "v3_mad(vertex_normal(scene, corners.index[1]), u,",
       "v3_mad(vertex_normal(scene, corners.index[2]), u,"},
      "normals",
      check_smooth_normals},
@@ -167,7 +167,9 @@ const std::vector<Control> films = {
       "int reach = (int)ceil(settings->filter_radius - 0.5f);", "int reach = 0;"},
      "filters",
      check_filters},
-    {{"the image mirrored", "camera.cl", "(1 - 2 * sx)", "(2 * sx - 1)"}, "filters", check_filters},
+    {{"the image mirrored", "cameras/perspective.cl", "(1 - 2 * film.x)", "(2 * film.x - 1)"},
+     "filters",
+     check_filters},
 };
 
 } // namespace

@@ -44,7 +44,7 @@ const Overrides dark_path = {{"lighting", "bsdf"}, {"rr", "throughput"}};
 // The scene point_light with further lamps below the floor, which hides them.
 SceneDescription lamps(const std::vector<double> &others) {
     SceneDescription scene = point_light();
-    scene.camera.fov = 1e-5; // all samples see one point, however few choose the lamp
+    scene.camera.perspective.fov = 1e-5; // all samples see one point, however few choose the lamp
     for (double power : others)
         scene.lights.push_back({emitter_point{{0.1, -1, 0.2}, {power, power, power}}, {}});
     return scene;

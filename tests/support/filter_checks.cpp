@@ -52,7 +52,7 @@ SceneDescription half_lit(double edge) {
     scene.meshes[0].bsdf = diffuse(0);
     scene.camera.width = width;
     scene.camera.height = height;
-    scene.camera.fov = 90;
+    scene.camera.perspective.fov = 90;
     scene.strategy.max_depth = 1;
     return scene;
 }

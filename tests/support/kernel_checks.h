@@ -8,6 +8,7 @@
 namespace opal::test {
 
 Findings check_known_numbers(const Sources &sources, unsigned seed); // bit for bit, never 1
+Findings check_dimensions(const Sources &sources, unsigned);         // keys
 Findings check_sobol(const Sources &sources, unsigned seed);         // elementary intervals
 Findings check_stratified(const Sources &sources, unsigned seed);    // strata, permutations
 Findings check_independence(const Sources &sources,

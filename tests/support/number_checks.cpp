@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <set>
@@ -47,6 +48,31 @@ bool below_one(const Planes &numbers) {
             if (!(numbers.at(plane, i) >= 0 && numbers.at(plane, i) < 1))
                 return false;
     return true;
+}
+
+// The keys of the dimensions of `count` segments from `first` on, in their order.
+struct DimensionKeys {
+    std::vector<uint> old, added;
+};
+DimensionKeys keys_of_segments(Sources sources, uint first, uint count) {
+    sources.files["tests/inline.cl"] =
+        "#include \"core/lanes.cl\"\n#include \"core/rng.cl\"\n"
+        "kernel void sizes(global uint *out) { out[0] = DIMS_A_SEGMENT; out[1] = ADDED_A_SEGMENT; }\n"
+        "kernel void keys(uint first, global uint *old, global uint *added) {\n"
+        "    uint i = (uint)get_global_id(0);\n"
+        "    for (uint n = 0; n < DIMS_A_SEGMENT; n++)\n"
+        "        old[i * DIMS_A_SEGMENT + n] = segment_dimension(first + i, n);\n"
+        "    for (uint n = 0; n < ADDED_A_SEGMENT; n++)\n"
+        "        added[i * ADDED_A_SEGMENT + n] = segment_dimension(first + i, ADDED_DIMENSION + n);\n"
+        "}\n";
+    BuildOptions build;
+    build.kernels = "tests/inline.cl";
+    const cl::Program program = build_program(device(), program_text(all_features(), build, sources), build);
+    const Output<uint> sizes(2);
+    run(program, "sizes", 1, sizes);
+    const Output<uint> old(count * sizes.read()[0]), added(count * sizes.read()[1]);
+    run(program, "keys", count, first, old, added);
+    return {old.read(), added.read()};
 }
 
 Finding uncorrelated(const std::string &what, const Planes &a, size_t plane_a, const Planes &b, size_t plane_b,
@@ -204,10 +230,38 @@ Findings check_stratified(const Sources &sources, unsigned seed) {
     return findings;
 }
 
+Findings check_dimensions(const Sources &sources, unsigned) {
+    constexpr uint segments = 4096, last = 1 << 28; // the first ones, and the last ones that have keys of their own
+    const DimensionKeys first = keys_of_segments(sources, 1, segments),
+                        end = keys_of_segments(sources, last - segments, segments),
+                        camera = keys_of_segments(sources, 0, 1);
+    std::set<uint> distinct = {0}, low_bits; // 0: of the film
+    size_t all = 1;
+    for (const std::vector<uint> *keys : {&first.old, &first.added, &end.old, &end.added, &camera.added}) {
+        distinct.insert(keys->begin(), keys->end());
+        all += keys->size();
+    }
+    for (const std::vector<uint> *keys : {&first.old, &first.added, &camera.added})
+        for (uint key : *keys)
+            low_bits.insert(key & 0x7fffffffu);
+    bool known = true; // the keys of older pictures
+    for (uint i = 0; i < first.old.size(); i++)
+        known = known && first.old[i] == 1 + i;
+    const auto is_marked = [](uint key) { return key >> 31 == 1; };
+    return {
+        exact("keys are distinct", distinct.size() == all),
+        exact("keys of the first segments differ not in the highest bit alone",
+              low_bits.size() == first.old.size() + first.added.size() + camera.added.size()),
+        exact("old dimensions have their keys", known && first.old.size() == 5 * segments),
+        exact("added dimensions have the highest bit", std::all_of(end.added.begin(), end.added.end(), is_marked) &&
+                                                           std::none_of(end.old.begin(), end.old.end(), is_marked))};
+}
+
 Findings check_independence(const Sources &sources, unsigned seed) {
     Findings findings;
     constexpr size_t count = 1 << 16;
     KernelProbe probe = probe_at(device().info.native_lanes, sources);
+    const DimensionKeys camera = keys_of_segments(sources, 0, 1), segment = keys_of_segments(sources, 1, 1);
     for (int sampler : {CHOICE_sampler_independent, CHOICE_sampler_stratified, CHOICE_sampler_sobol}) {
         const std::string name = axes()[AXIS_sampler].choices[size_t(sampler)].name + ": ";
         NumberOptions options;
@@ -230,6 +284,24 @@ Findings check_independence(const Sources &sources, unsigned seed) {
         for (size_t plane : {1u, 2u, 3u, 5u}) {
             findings.push_back(uncorrelated(name + "dimensions", pixels, 0, pixels, plane));
             findings.push_back(uniform_pairs(name + "pairs of dimensions", pixels, 0, pixels, plane));
+        }
+        options.seed = seed;
+        std::vector<Planes> added;
+        for (uint key : {camera.added[0], camera.added[1], segment.added[0]}) {
+            options.first_dimension = key;
+            added.push_back(probe.numbers(count, options));
+        }
+        options.first_dimension = 0;
+        for (size_t i = 0; i < added.size(); i++) {
+            std::vector<double> first(added[i].values.begin(), added[i].values.begin() + count);
+            findings.push_back(p_value(name + "added dimension uniform", stats::ks_uniform_test(first).p_value));
+            findings.push_back(uniform_pairs(name + "pairs of an added dimension", added[i], 0, added[i], 1));
+            findings.push_back(uncorrelated(name + "added dimensions", added[i], 0, added[(i + 1) % 3], 0));
+            findings.push_back(uniform_pairs(name + "pairs of added dimensions", added[i], 0, added[(i + 1) % 3], 0));
+            for (size_t plane = 0; plane < 2 * OPAL_PROBE_PAIRS; plane++) {
+                findings.push_back(uncorrelated(name + "an added dimension and others", pixels, plane, added[i], 0));
+                findings.push_back(uniform_pairs(name + "pairs with an added dimension", pixels, plane, added[i], 1));
+            }
         }
         findings.push_back(uncorrelated(name + "seeds", pixels, 0, other_seed, 0));
         findings.push_back(uniform_pairs(name + "pairs of seeds", pixels, 0, other_seed, 0));

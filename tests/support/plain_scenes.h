@@ -13,7 +13,6 @@ using examples::diffuse;
 using examples::made_of;
 using examples::mesh_of;
 using examples::quad;
-using examples::Shape;
 
 // A mesh of the material diffuse(albedo, use_cosine).
 inline Mesh diffuse(Shape shape, double albedo = 0.5, bool use_cosine = false) {
@@ -38,7 +37,7 @@ inline SceneDescription scene_of(std::vector<Mesh> meshes) {
 
 // Corner of the triangle in that slot.
 inline std::array<float, 3> vertex(const FlatScene &scene, uint slot, int corner) {
-    const auto &axes = scene.blocks.at(slot / 8).vertex[corner];
+    const auto &axes = scene.triangle_blocks.at(slot / 8).vertex[corner];
     return {axes[0][slot % 8], axes[1][slot % 8], axes[2][slot % 8]};
 }
 

@@ -1,16 +1,18 @@
 // many_lanes/path_starts: camera paths are started LANES at a time and wait for a lane that ends, because a path that
 // is started for one lane alone leaves the others idle.
-#include "camera.cl"
+#include "cameras/dispatch.cl"
+#include "cameras/interface.cl"
 #include "core/lanes.cl"
 #include "core/rng.cl"
 #include "integrators/steps.cl"
 #include "kernels/queue.cl"
 #include "scene.cl"
 
-// LANES camera paths.
+// LANES camera paths. Their origins are kept only where they differ.
+enum { LANES_OF_ORIGINS = CAMERAS_OF_MANY_ORIGINS > 0 ? LANES : 1 };
 typedef struct {
     uint pixel[LANES], sample[LANES], key0[LANES], key1[LANES];
-    real1 d[3][LANES], tmin[LANES], tmax[LANES];
+    real1 o[3][LANES_OF_ORIGINS], d[3][LANES], tmin[LANES], tmax[LANES];
 } CameraPaths;
 
 // Starts the queue's next samples, at most LANES. Returns how many there are.
@@ -27,10 +29,15 @@ static int start_paths(const Scene *scene, Queue *queue, CameraPaths *paths) {
     }
     uints x = LOAD(uints, xs), y = LOAD(uints, ys);
     Sampler sampler = sampler_start(y * scene->settings->width + x, LOAD(uints, paths->sample), scene->settings->seed);
-    Ray ray = camera_ray(scene, x, y, film_offset(scene, sampler));
+    Ray ray = camera_ray(scene, x, y, film_offset(scene, sampler), lens_numbers(scene, sampler));
     STORE(sampler.pixel, paths->pixel);
     STORE(sampler.key0, paths->key0);
     STORE(sampler.key1, paths->key1);
+    if (CAMERAS_OF_MANY_ORIGINS > 0) {
+        STORE(ray.o.x, paths->o[0]);
+        STORE(ray.o.y, paths->o[1]);
+        STORE(ray.o.z, paths->o[2]);
+    }
     STORE(ray.d.x, paths->d[0]);
     STORE(ray.d.y, paths->d[1]);
     STORE(ray.d.z, paths->d[2]);
@@ -70,11 +77,15 @@ static mask refill(const Scene *scene, Starts *starts, Path *path, uint ended) {
         to->key0[lane] = from->key0[k];
         to->key1[lane] = from->key1[k];
         for (int axis = 0; axis < 3; axis++) to->d[axis][lane] = from->d[axis][k];
+        if (CAMERAS_OF_MANY_ORIGINS > 0)
+            for (int axis = 0; axis < 3; axis++) to->o[axis][lane] = from->o[axis][k];
         to->tmin[lane] = from->tmin[k];
         to->tmax[lane] = from->tmax[k];
     }
     mask start = mask_of(taken);
-    path->ray.o = v3_pick(start, v3_from(scene->settings->camera_origin), path->ray.o);
+    v3 o = v3_from(scene->cameras->origin);
+    if (CAMERAS_OF_MANY_ORIGINS > 0) o = v3_of(LOAD(real, to->o[0]), LOAD(real, to->o[1]), LOAD(real, to->o[2]));
+    path->ray.o = v3_pick(start, o, path->ray.o);
     v3 d = v3_of(LOAD(real, to->d[0]), LOAD(real, to->d[1]), LOAD(real, to->d[2]));
     path->ray.d = v3_pick(start, d, path->ray.d);
     path->ray.tmin = start ? LOAD(real, to->tmin) : path->ray.tmin;

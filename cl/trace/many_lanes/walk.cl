@@ -1,15 +1,17 @@
 // many_lanes/walk: closest and any hit in the tree, for kernels that carry several lanes, as CPUs run them.
 //
 // The root's children are tested against all lanes at once. A lane that meets some of them walks on alone, with the
-// eight children or triangles of a node in one vector. Two lanes are walked in turn: while one waits for memory or for
-// the end of a comparison, the other goes on.
+// eight children of a node or primitives of a leaf in one vector. Two lanes are walked in turn: while one waits for
+// memory or for the end of a comparison, the other goes on.
 #include "core/lanes.cl"
+#include "core/many_lanes/eight_wide.cl"
 #include "core/math.cl"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
+#include "shapes/interface.cl"
+#include "shapes/list.h"
 #include "shared/counters.h"
 #include "shared/types.h"
-#include "trace/many_lanes/eight_wide.cl"
-#include "trace/many_lanes/triangle.cl"
 #include "trace/rays.cl"
 
 // All lanes' rays, one member of LaneRay an array, so that a loop can read one lane after the other.
@@ -93,11 +95,11 @@ static mask8 intersect_children(global const BvhNode *node, const LaneRay *ray, 
     return *entry <= real8_min(real8_min(far_x, far_y), real8_min(far_z, (real8)(ray->tmax)));
 }
 
-// Prefetches a waiting child: the five cache lines of a triangle block, or a node, which is smaller.
+// Prefetches a waiting child: the five cache lines of a triangle block; a node is smaller.
 static void fetch_child(const Scene *scene, uint child) {
     if (!OPAL_HAS_large_tree) return;
-    global const char *at = child & OPAL_LEAF ? (global const char *)(scene->blocks + (child & ~OPAL_LEAF))
-                                              : (global const char *)(scene->nodes + child);
+    global const char *at =
+        child & OPAL_LEAF ? leaf_of(scene, child).block : (global const char *)(scene->nodes + child);
     for (uint line = 0; line < sizeof(TriangleBlock) / CACHE_LINE; line++) FETCH(at + line * CACHE_LINE);
 }
 
@@ -143,25 +145,34 @@ static void start_closest(const Scene *scene, const TreeRays *rays, uint *waitin
     w->limit = key_of(w->at.tmax) | KEY_PLACE;
 }
 
-// Tests a block's triangles and keeps the nearest hit.
-static void test_block(const Scene *scene, const TreeRays *rays, uint block, ClosestWalk *w, LaneHits *hits) {
+// The primitives of a block that are hit between tmin and tmax, as bytes_of.
+static ulong hits_of(BlockTest test, const LaneRay *ray) {
+    // A miss gets the far bound as its distance, so that one comparison decides: clang lowers mixed masks lane by lane.
+    real8 bound = ray->tmax * test.determinant;
+    real8 distance = test.distance > ray->tmin * test.determinant ? test.distance : bound;
+    return bytes_of((test.inside ? distance : bound) < bound);
+}
+
+// Tests a leaf's primitives and keeps the nearest hit.
+static void test_leaf(const Scene *scene, const TreeRays *rays, uint child, ClosestWalk *w, LaneHits *hits) {
     add_count(scene, COUNTER_blocks, 1);
     LaneRay ray = load_ray(rays, w->at.lane, w->at.tmax);
-    BlockTest test = intersect_block(scene->blocks + block, &ray);
-    if (!test.hits) return;
+    BlockTest test = intersect_leaf(leaf_of(scene, child), 0, &ray);
+    ulong met = hits_of(test, &ray);
+    if (!met) return;
     real1 t[OPAL_WIDTH], reciprocal[OPAL_WIDTH], b[OPAL_WIDTH], c[OPAL_WIDTH];
     real8 inverse = 1 / test.determinant;
     vstore8(test.distance * inverse, 0, t);
     vstore8(inverse, 0, reciprocal);
     vstore8(test.b, 0, b);
     vstore8(test.c, 0, c);
-    for (; test.hits; test.hits &= test.hits - 1) {
-        uint i = first_of(test.hits);
+    for (; met; met &= met - 1) {
+        uint i = first_of(met);
         if (t[i] < w->at.tmax) {
             hits->t[w->at.lane] = w->at.tmax = t[i];
             hits->u[w->at.lane] = b[i] * reciprocal[i];
             hits->v[w->at.lane] = c[i] * reciprocal[i];
-            hits->slot[w->at.lane] = block * OPAL_WIDTH + i;
+            set_primitive(hits, w->at.lane, child, i);
             w->limit = key_of(t[i]) | KEY_PLACE;
         }
     }
@@ -185,7 +196,7 @@ static void step_closest(const Scene *scene, const TreeRays *rays, uint *waiting
     // Visit this one
     w->nearest = NO_KEY;
     if (child & OPAL_LEAF) {
-        test_block(scene, rays, child & ~OPAL_LEAF, w, hits);
+        test_leaf(scene, rays, child, w, hits);
     } else {
         add_count(scene, COUNTER_nodes, 1);
         real8 enter;
@@ -254,7 +265,7 @@ static void step_any(const Scene *scene, const TreeRays *rays, uint *waiting, An
     if (child & OPAL_LEAF) {
         add_count(scene, COUNTER_blocks, 1);
         w->met = 0;
-        if (intersect_block(scene->blocks + (child & ~OPAL_LEAF), &ray).hits) {
+        if (hits_of(intersect_leaf(leaf_of(scene, child), 0, &ray), &ray)) {
             *blocked |= 1u << w->at.lane;
             start_any(scene, rays, waiting, w);
         }

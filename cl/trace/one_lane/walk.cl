@@ -3,13 +3,14 @@
 // A GPU keeps a work-item's values in registers, of which it has few; an array that is indexed by a variable lies in
 // memory. So the ray is held in scalars, each level of the stack takes 8 bytes, and one walk serves both kinds of rays.
 // The loops are those of Aila and Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs" (while-while:
-// down to a leaf, then its triangles). Children are visited in the order of their distance, as many_lanes/walk.cl does,
-// so that both meet the same triangles.
+// down to a leaf, then its primitives). Children are visited in the order of their distance, as many_lanes/walk.cl
+// does, so that both meet the same primitives.
 #include "core/lanes.cl"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
+#include "shapes/interface.cl"
 #include "shared/counters.h"
 #include "shared/types.h"
-#include "trace/one_lane/triangle.cl"
 #include "trace/rays.cl"
 
 #if OPAL_DOUBLE
@@ -102,16 +103,16 @@ static void prepare_rays(TreeRays *w, const Scene *scene, Ray ray, mask active) 
     w->walking = active && finite && w->order != NO_CHILDREN;
 }
 
-// Does the ray hit a triangle of the block before its tmax? The nearest one is kept in `hits`, unless `any` hit will
+// Does the ray hit a primitive of the leaf before its tmax? The nearest one is kept in `hits`, unless `any` hit will
 // do.
-static bool hit_block(const Scene *scene, LaneRay *r, uint block, bool any, LaneHits *hits) {
+static bool hit_leaf(const Scene *scene, LaneRay *r, uint child, bool any, LaneHits *hits) {
     add_count(scene, COUNTER_blocks, 1);
-    global const TriangleBlock *triangles = scene->blocks + block;
-    real1 tmax = r->tmax; // the same bound for all eight, as in intersect_block
+    Leaf leaf = leaf_of(scene, child);
+    real1 tmax = r->tmax; // the same bound for all eight, as in many_lanes/
     bool hit = false;
 #pragma unroll 1
-    for (uint i = 0; i < OPAL_WIDTH && triangles->id[i] != OPAL_NONE; i++) { // unused places come last
-        TriangleTest test = intersect_triangle(triangles, i, r);
+    for (uint i = 0; i < OPAL_WIDTH && leaf_has(leaf, i); i++) {
+        BlockTest test = intersect_leaf(leaf, i, r);
         if (!test.inside || !(test.distance > r->tmin * test.determinant)) continue;
         if (!(test.distance < tmax * test.determinant)) continue;
         if (any) return true;
@@ -121,7 +122,7 @@ static bool hit_block(const Scene *scene, LaneRay *r, uint block, bool any, Lane
         hits->t[0] = r->tmax = t;
         hits->u[0] = test.b * reciprocal;
         hits->v[0] = test.c * reciprocal;
-        hits->slot[0] = block * OPAL_WIDTH + i;
+        set_primitive(hits, 0, child, i);
     }
     return hit;
 }
@@ -153,7 +154,7 @@ static bool walk(const Scene *scene, const TreeRays *w, bool any, LaneHits *hits
             node = child;
             order = children_in_order(scene->nodes + node, &r, r.tmax);
         }
-        hit = hit_block(scene, &r, child & ~OPAL_LEAF, any, hits) || hit;
+        hit = hit_leaf(scene, &r, child, any, hits) || hit;
         if (any && hit) return true;
     }
 }

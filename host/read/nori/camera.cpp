@@ -1,6 +1,8 @@
 // Parsers of the camera and of its reconstruction filter.
 #include "read/nori/parsers.h"
 
+#include <fmt/format.h>
+
 namespace opal {
 
 namespace {
@@ -34,9 +36,24 @@ const std::vector<FilterType> filter_types = {OPAL_FILTERS(OPAL_FILTER_TYPE)};
 
 struct CameraType {
     std::string name;
+    uint kind;
+    void (*parse)(Properties &, Camera &); // the parameters of the kind
 };
 
-const std::vector<CameraType> camera_types = {{"perspective"}};
+// Reads a number if it is given.
+void read_number(Properties &properties, const char *name, ValueRange range, const char *meaning, double &number) {
+    number = properties.number(name).value_or(number);
+    properties.check(range.holds(number), name, fmt::format("must be {}: {}", text_of(range), meaning));
+}
+
+#define OPAL_READ_NUMBER(type, name, xml, initial, range, meaning)                                                     \
+    read_number(properties, xml, range, meaning, own.name);
+#define OPAL_CAMERA_TYPE(name, record, traits)                                                                         \
+    {#name, CAMERA_##name, []([[maybe_unused]] Properties &properties, [[maybe_unused]] Camera &camera) {              \
+         [[maybe_unused]] auto &own = camera.name;                                                                     \
+         OPAL_CAMERA_##name(OPAL_READ_NUMBER)                                                                          \
+     }},
+const std::vector<CameraType> camera_types = {OPAL_CAMERAS(OPAL_CAMERA_TYPE)};
 
 } // namespace
 
@@ -52,19 +69,19 @@ Filter parse_filter(const XmlNode &node, const ParseContext &context) {
 }
 
 Camera parse_camera(const XmlNode &node, const ParseContext &context) {
-    row_of_type(node, camera_types);
+    const CameraType &type = row_of_type(node, camera_types);
     Properties properties(node, context);
     Camera camera;
+    camera.kind = type.kind;
     camera.place = node.place();
     camera.to_world = properties.transform("toWorld").value_or(Transform());
     camera.width = properties.integer("width").value_or(camera.width);
     camera.height = properties.integer("height").value_or(camera.height);
-    camera.fov = properties.number("fov").value_or(camera.fov);
+    type.parse(properties, camera);
     camera.near_clip = properties.number("nearClip").value_or(camera.near_clip);
     camera.far_clip = properties.number("farClip").value_or(camera.far_clip);
     properties.check(camera.width >= 1, "width", "must be at least 1 pixel");
     properties.check(camera.height >= 1, "height", "must be at least 1 pixel");
-    properties.check(camera.fov > 0 && camera.fov < 180, "fov", "must lie between 0 and 180 degrees");
     properties.check(camera.near_clip >= 0, "nearClip", "must not be negative");
     properties.check(camera.far_clip > camera.near_clip, "farClip", "must be larger than nearClip");
     if (auto filter = properties.child("rfilter"))

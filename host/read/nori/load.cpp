@@ -22,10 +22,7 @@ void choose_filter(SceneDescription &scene) {
 }
 
 bool has_light(const SceneDescription &scene) {
-    bool needs_none = scene.strategy[AXIS_integrator] == CHOICE_integrator_normals ||
-                      scene.strategy[AXIS_integrator] == CHOICE_integrator_ao ||
-                      scene.strategy[AXIS_integrator] == CHOICE_integrator_simple;
-    return needs_none || !scene.lights.empty() ||
+    return !integrator_of(scene.strategy).has(OPAL_ASKS_LIGHTS) || !scene.lights.empty() ||
            std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh &mesh) { return mesh.radiance; });
 }
 

@@ -34,9 +34,10 @@ void parse_obj(Properties &properties, const Transform &to_world, Mesh &mesh) {
 
 void parse_parallelogram(Properties &properties, const Transform &to_world, Mesh &mesh) {
     Parallelogram shape;
-    shape.origin = to_world.point(properties.required(properties.point("origin"), "origin"));
-    shape.u = to_world.vector(properties.required(properties.vector("u"), "u"));
-    shape.v = to_world.vector(properties.required(properties.vector("v"), "v"));
+    shape.origin = properties.required(properties.point("origin"), "origin");
+    shape.u = properties.required(properties.vector("u"), "u");
+    shape.v = properties.required(properties.vector("v"), "v");
+    shape = shape.moved(to_world);
     if (!(length(cross(shape.u, shape.v)) > 1e-12 * length(shape.u) * length(shape.v)))
         properties.fail("the parallelogram has no area: u and v are zero or parallel");
     mesh.shape = shape;

@@ -1,11 +1,12 @@
 // many_lanes/triangle: one ray against the eight triangles of a block, in one vector.
 #include "core/lanes.cl"
+#include "core/many_lanes/eight_wide.cl"
+#include "shapes/edge.cl"
+#include "shapes/interface.cl"
+#include "shapes/list.h"
 #include "shared/types.h"
-#include "trace/many_lanes/eight_wide.cl"
-#include "trace/rays.cl"
-#include "trace/edge.cl"
 
-// As edge() in trace/edge.cl.
+// As edge() in shapes/edge.cl.
 static real8 edge8(real8 ax, real8 ay, real8 bx, real8 by) {
 #pragma OPENCL FP_CONTRACT OFF
     real8 p = ax * by;
@@ -13,14 +14,8 @@ static real8 edge8(real8 ax, real8 ay, real8 bx, real8 by) {
     return p - q;
 }
 
-// The intersections of a ray with a block's triangles, as signed sums: t = distance / determinant, and the barycentric
-// weights of corners 1 and 2, b / determinant and c / determinant. They are left undivided because most are never used.
-typedef struct {
-    real8 distance, determinant, b, c;
-    ulong hits; // bytes_of those that are hit between tmin and tmax
-} BlockTest;
-
-static BlockTest intersect_block(global const TriangleBlock *block, const LaneRay *ray) {
+// Distances and weights are signed sums.
+static BlockTest intersect_triangle(global const TriangleBlock *block, uint place, const LaneRay *ray) {
     global const float *x = block->vertex[0][ray->kx], *y = block->vertex[0][ray->ky], *z = block->vertex[0][ray->kz];
     real1 ox = ray->sheared_o[0], oy = ray->sheared_o[1], oz = ray->sheared_o[2];
     real8 az = load8(z + CORNER(0)) - oz, bz = load8(z + CORNER(1)) - oz, cz = load8(z + CORNER(2)) - oz;
@@ -31,7 +26,6 @@ static BlockTest intersect_block(global const TriangleBlock *block, const LaneRa
     real8 cx = mul_add(-ray->shear_x, cz, load8(x + CORNER(2)) - ox);
     real8 cy = mul_add(-ray->shear_y, cz, load8(y + CORNER(2)) - oy);
     real8 a = edge8(cx, cy, bx, by), b = edge8(ax, ay, cx, cy), c = edge8(bx, by, ax, ay);
-    mask8 inside = real8_min(a, real8_min(b, c)) >= 0 | real8_max(a, real8_max(b, c)) <= 0;
 
     BlockTest test;
     real8 sum = a + (b + c); // in the order of face_test, whichever corner comes first
@@ -39,9 +33,6 @@ static BlockTest intersect_block(global const TriangleBlock *block, const LaneRa
     test.distance = copysign((real8)(ray->scale_z), sum * ray->scale_z) * mul_add(a, az, mul_add(b, bz, c * cz));
     test.b = fabs(b);
     test.c = fabs(c);
-    // A miss gets the far bound as its distance, so that one comparison decides: clang lowers mixed masks lane by lane.
-    real8 bound = ray->tmax * test.determinant;
-    real8 distance = test.distance > ray->tmin * test.determinant ? test.distance : bound;
-    test.hits = bytes_of((inside ? distance : bound) < bound);
+    test.inside = real8_min(a, real8_min(b, c)) >= 0 | real8_max(a, real8_max(b, c)) <= 0;
     return test;
 }

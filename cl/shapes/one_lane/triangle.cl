@@ -1,14 +1,12 @@
-// one_lane/triangle: one ray against one triangle of a block, as intersect_block in many_lanes/ does for all eight.
+// one_lane/triangle: one ray against one triangle of a block, as many_lanes/ does for all eight.
 #include "core/lanes.cl"
+#include "shapes/edge.cl"
+#include "shapes/interface.cl"
+#include "shapes/list.h"
 #include "shared/types.h"
-#include "trace/rays.cl"
-#include "trace/edge.cl"
 
-// The intersection of a ray's line with a triangle, as signed sums: t = distance / determinant, and the barycentric
-// weights of corners 1 and 2, b / determinant and c / determinant. They are left undivided because most are never used.
-typedef struct { real1 distance, determinant, b, c; bool inside; } TriangleTest;
-
-static TriangleTest intersect_triangle(global const TriangleBlock *block, uint i, const LaneRay *r) {
+// Distances and weights are signed sums.
+static BlockTest intersect_triangle(global const TriangleBlock *block, uint i, const LaneRay *r) {
     real1 ox = r->sheared_o[0], oy = r->sheared_o[1], oz = r->sheared_o[2];
     // One pointer an axis: nine addresses by kx, ky and kz would take 20 registers more on NVIDIA.
     global const float *x = block->vertex[0][r->kx] + i, *y = block->vertex[0][r->ky] + i;
@@ -20,7 +18,7 @@ static TriangleTest intersect_triangle(global const TriangleBlock *block, uint i
     real1 a = edge(cx, cy, bx, by), b = edge(ax, ay, cx, cy), c = edge(bx, by, ax, ay);
     real1 sum = a + (b + c);
     real1 distance = copysign(r->scale_z, sum * r->scale_z) * mul_add(a, az, mul_add(b, bz, c * cz));
-    TriangleTest test = {distance, fabs(sum), fabs(b), fabs(c),
-                         fmin(a, fmin(b, c)) >= 0 || fmax(a, fmax(b, c)) <= 0};
+    BlockTest test = {distance, fabs(sum), fabs(b), fabs(c),
+                      fmin(a, fmin(b, c)) >= 0 || fmax(a, fmax(b, c)) <= 0};
     return test;
 }

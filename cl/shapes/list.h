@@ -1,0 +1,42 @@
+// The shapes that the tree's leaves hold: one row with the record of its blocks, and one file cl/shapes/NAME.cl each.
+#ifndef OPAL_SHAPE_LIST_H
+#define OPAL_SHAPE_LIST_H
+
+#include "shared/types.h"
+
+#define OPAL_SHAPES(SHAPE) \
+    SHAPE(triangle, TriangleBlock)
+
+#define OPAL_SHAPE_ENUM(name, Block) SHAPE_##name,
+enum { OPAL_SHAPES(OPAL_SHAPE_ENUM) SHAPE_COUNT };
+
+// The shapes' tables, as rows of OPAL_TABLES (scene_tables.h): NAME_blocks of each shape, and what else it needs.
+#define OPAL_SHAPE_TABLES(TABLE) \
+    TABLE(TriangleBlock, triangle_blocks, "triangle blocks") \
+    TABLE(Triangle, triangles, "triangles")
+
+#ifdef __cplusplus
+namespace opal {
+#endif
+
+// Eight triangles: vertex[corner][axis][place]. Unused places come last. They repeat one point, which no ray hits, and
+// have id OPAL_NONE.
+typedef struct {
+    float vertex[3][3][OPAL_WIDTH];
+    uint id[OPAL_WIDTH];  // index into the Triangle array
+} TriangleBlock;
+OPAL_SIZE_CHECK(TriangleBlock, 320);
+
+// A triangle's attributes for shading, beside its vertices.
+typedef struct {
+    uint normal[3];       // of each corner, an index into the normals (3 floats each); OPAL_NONE: use the geometric one
+    uint mesh;
+} Triangle;
+OPAL_SIZE_CHECK(Triangle, 16);
+
+#ifdef __cplusplus
+static_assert(SHAPE_COUNT <= OPAL_SHAPE_BITS); // one is left, so that no leaf is OPAL_NONE
+}
+#endif
+
+#endif

@@ -1,0 +1,53 @@
+#include "scene/shapes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace opal {
+
+void Extent::add(Vec3 p) {
+    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
+    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
+}
+
+void Extent::add(const Extent &other) {
+    add(other.lo);
+    add(other.hi);
+}
+
+double Extent::longest_side() const { return empty() ? 0 : std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z}); }
+
+double Extent::radius() const { return empty() ? 0 : length(hi - lo) / 2; }
+
+Extent TriangleMesh::extent() const {
+    Extent extent;
+    for (const auto &triangle : triangles)
+        for (const Corner &corner : triangle)
+            extent.add(positions[corner.position]);
+    return extent;
+}
+
+TriangleMesh TriangleMesh::moved(const Transform &by) const {
+    TriangleMesh mesh = *this;
+    for (Vec3 &p : mesh.positions)
+        p = by.point(p);
+    for (Vec3 &n : mesh.normals)
+        n = normalize(by.normal(n));
+    return mesh;
+}
+
+std::string TriangleMesh::text() const { return fmt::format("{} triangles", triangles.size()); }
+
+Extent Parallelogram::extent() const {
+    Extent extent;
+    for (Vec3 corner : corners())
+        extent.add(corner);
+    return extent;
+}
+
+Parallelogram Parallelogram::moved(const Transform &by) const { return {by.point(origin), by.vector(u), by.vector(v)}; }
+
+std::string Parallelogram::text() const { return "parallelogram"; }
+
+} // namespace opal

@@ -1,0 +1,51 @@
+// The shapes of meshes, in world space and double precision. Each kind has the same three functions; what it becomes on
+// the device says an overload of add_primitives (flatten/geometry.cpp).
+#pragma once
+
+#include "base/math.h"
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace opal {
+
+// An axis-aligned box, empty at first.
+struct Extent {
+    Vec3 lo{INFINITY, INFINITY, INFINITY}, hi{-INFINITY, -INFINITY, -INFINITY};
+    void add(Vec3 p);
+    void add(const Extent &other);
+    bool empty() const { return lo.x > hi.x; }
+    Vec3 middle() const { return lo * 0.5 + hi * 0.5; }
+    Vec3 corner(unsigned i) const { return {i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z}; } // of 8
+    double longest_side() const; // 0 if empty
+    double radius() const;       // of the sphere through the corners; 0 if empty
+};
+
+struct TriangleMesh {
+    std::vector<Vec3> positions;
+    std::vector<Vec3> normals; // unit; may be empty
+    struct Corner {
+        unsigned position, normal;
+    };                                            // indices; normal OPAL_NONE: the geometric normal
+    std::vector<std::array<Corner, 3>> triangles; // degenerate ones already dropped
+
+    Extent extent() const; // of the positions that triangles use
+    TriangleMesh moved(const Transform &by) const;
+    std::string text() const; // for people: "12 triangles"
+};
+
+struct Parallelogram {
+    Vec3 origin, u, v; // front side u x v
+
+    std::array<Vec3, 4> corners() const { return {origin, origin + u, origin + v, origin + u + v}; }
+    Extent extent() const;
+    Parallelogram moved(const Transform &by) const;
+    std::string text() const;
+};
+
+using Shape = std::variant<TriangleMesh, Parallelogram>;
+
+} // namespace opal

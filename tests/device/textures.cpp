@@ -1,0 +1,79 @@
+// Textures on the parameters of BSDFs. The renderer has no kind of texture yet: this test adds one to the sources.
+#include "support/probe.h"
+#include "textures/list.h"
+
+#include <catch2/catch.hpp>
+
+#include <bit>
+#include <numbers>
+
+using namespace opal;
+using namespace opal::test;
+
+namespace {
+
+// The sources with a texture of one colour, which its record holds after its kind.
+Sources with_constant_texture() {
+    Sources sources = Sources::embedded();
+    std::string &list = sources.files.at("textures/list.h");
+    const std::string none = "#define OPAL_TEXTURES(TEXTURE)";
+    REQUIRE(list.find(none) != std::string::npos);
+    list.replace(list.find(none), none.size(), none + " TEXTURE(constant)");
+    sources.files["textures/constant.cl"] =
+        "static v3 texture_constant_color(const Scene *scene, uints at, v2 uv) {\n"
+        "    global const float *color = (global const float *)scene->textures + 1;\n"
+        "    return v3_of(GATHER_WORD(real, color, at), GATHER_WORD(real, (color + 1), at),\n"
+        "                 GATHER_WORD(real, (color + 2), at));\n"
+        "}\n";
+    return sources;
+}
+
+uint word(float x) { return std::bit_cast<uint>(x); }
+
+// Three meshes: diffuse with a texture, diffuse without, Phong with a texture on its exponent.
+FlatScene textured_scene() {
+    bsdf_diffuse_record red{.albedo = {0.8, 0.4, 0.2}};
+    bsdf_phong_record glossy{.n = 40};
+    red.albedo.texture = 0;
+    glossy.n.texture = 4;
+    FlatScene scene = scene_of_bsdfs({red, bsdf_diffuse_record{.albedo = 0.6}, glossy, bsdf_phong_record{.n = 10}});
+    scene.textures = {0, word(0.5f), word(0.25f), word(1), 0, word(0.25f), word(0.25f), word(0.25f)};
+    scene.features.textured[BSDF_diffuse] = 1;    // albedo
+    scene.features.textured[BSDF_phong] = 1 << 3; // n
+    return scene;
+}
+
+} // namespace
+
+TEST_CASE("A texture multiplies its parameter, in the lanes that have one", "[textures]") {
+    const Vec3 wi = {0.6, 0, 0.8}, mirrored = {-0.6, 0, 0.8};
+    const double inverse_pi = 1 / std::numbers::pi;
+    for (int lanes : tested_lanes()) {
+        INFO(lanes << " lanes");
+        KernelProbe probe = probe_of(textured_scene(), lanes, with_constant_texture());
+        const auto f = [&](unsigned mesh, Vec3 wo) { return probe.bsdf_eval(mesh, wi, std::vector{wo}); };
+        CHECK(f(0, mirrored).at(EVAL_R, 0) == Approx(0.8 * 0.5 * inverse_pi));
+        CHECK(f(0, mirrored).at(EVAL_G, 0) == Approx(0.4 * 0.25 * inverse_pi));
+        CHECK(f(0, mirrored).at(EVAL_B, 0) == Approx(0.2 * inverse_pi));
+        CHECK(f(1, mirrored).at(EVAL_R, 0) == Approx(0.6 * inverse_pi));
+        const Vec3 beside = {-0.8, 0, 0.6}; // 40 * 0.25 is the exponent of the untextured one
+        CHECK(f(2, beside).at(EVAL_R, 0) == Approx(f(3, beside).at(EVAL_R, 0)));
+        CHECK(f(2, beside).at(EVAL_PDF, 0) == Approx(f(3, beside).at(EVAL_PDF, 0)));
+    }
+}
+
+TEST_CASE("A kernel without textures reads none", "[textures]") {
+    FlatScene scene = textured_scene();
+    scene.features.textured.fill(0);
+    KernelProbe probe = probe_of(scene, 8, with_constant_texture());
+    const Planes f = probe.bsdf_eval(0, {0, 0, 1}, std::vector{Vec3{0, 0, 1}});
+    CHECK(f.at(EVAL_R, 0) == Approx(0.8 / std::numbers::pi));
+}
+
+TEST_CASE("The program says which parameters have a texture", "[textures]") {
+    const FlatScene scene = textured_scene();
+    const std::string text = program_text(scene.features, {}, Sources::embedded());
+    CHECK_THAT(text, Catch::Contains("#define OPAL_TEXTURED_bsdf_diffuse 1\n") &&
+                         Catch::Contains("#define OPAL_TEXTURED_bsdf_phong 8\n") &&
+                         Catch::Contains("#define OPAL_TEXTURED_bsdf_microfacet 0\n"));
+}
