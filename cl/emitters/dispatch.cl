@@ -9,9 +9,9 @@
 #include "surface.cl"
 
 #define COUNT_EMITTER(name, traits) +OPAL_HAS_emitter_##name
-#define COUNT_MET(name, traits) +(OPAL_HAS_emitter_##name && CAN_BE_MET(traits))
-#define COUNT_ENVIRONMENT(name, traits) +(OPAL_HAS_emitter_##name && IS_ENVIRONMENT(traits))
-#define COUNT_INFINITE(name, traits) +(OPAL_HAS_emitter_##name && ((traits) & INFINITE_LIGHT) != 0)
+#define COUNT_MET(name, traits) +(OPAL_HAS_emitter_##name && OPAL_CAN_BE_MET(traits))
+#define COUNT_ENVIRONMENT(name, traits) +(OPAL_HAS_emitter_##name && OPAL_IS_ENVIRONMENT(traits))
+#define COUNT_INFINITE(name, traits) +(OPAL_HAS_emitter_##name && ((traits) & OPAL_INFINITE) != 0)
 enum { // kinds of this kernel
     EMITTER_KINDS = 0 OPAL_EMITTERS(COUNT_EMITTER),
     MET_KINDS = 0 OPAL_EMITTERS(COUNT_MET),                 // that a ray can meet
@@ -36,8 +36,8 @@ static LightSample emitter_sample(const Scene *scene, uints id, ReferencePoint f
         if (ANY(m)) { \
             LightSample s = emitter_##name##_sample(scene, id, from, u, bits); \
             s.active = s.active & m; \
-            s.discrete = ((traits) & DELTA_LIGHT) != 0 ? ALL_LANES : NO_LANES; \
-            s.infinite = ((traits) & INFINITE_LIGHT) != 0 ? ALL_LANES : NO_LANES; \
+            s.discrete = ((traits) & OPAL_DELTA) != 0 ? ALL_LANES : NO_LANES; \
+            s.infinite = ((traits) & OPAL_INFINITE) != 0 ? ALL_LANES : NO_LANES; \
             sample = EMITTER_KINDS == 1 ? s : light_sample_pick(m, s, sample); \
         } \
     }
@@ -51,7 +51,7 @@ static v3 emitter_radiance(const Scene *scene, uints id, v3 d, Surface s, mask a
     v3 radiance = v3_all((real)(0));
     uints kind = emitter_kind(scene, id);
 #define RADIANCE_OF_EMITTER(name, traits) \
-    if (OPAL_HAS_emitter_##name && CAN_BE_MET(traits)) { \
+    if (OPAL_HAS_emitter_##name && OPAL_CAN_BE_MET(traits)) { \
         mask m = emitter_lanes(kind, EMITTER_##name, MET_KINDS, active); \
         if (ANY(m)) radiance = v3_pick(m, emitter_##name##_radiance(scene, id, d, s), radiance); \
     }
@@ -65,7 +65,7 @@ static real emitter_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d,
     real pdf = 0;
     uints kind = emitter_kind(scene, id);
 #define PDF_OF_EMITTER(name, traits) \
-    if (OPAL_HAS_emitter_##name && CAN_BE_MET(traits)) { \
+    if (OPAL_HAS_emitter_##name && OPAL_CAN_BE_MET(traits)) { \
         mask m = emitter_lanes(kind, EMITTER_##name, MET_KINDS, active); \
         if (ANY(m)) pdf = m ? emitter_##name##_pdf(scene, id, from, d, s) : pdf; \
     }
@@ -79,9 +79,10 @@ static uints emitter_met(const Scene *scene, Surface s, mask hit, mask active, m
     *met = active & hit & to_mask(s.emitter != OPAL_NONE) & (s.wi.z > 0);
     uints id = s.emitter;
     if (ENVIRONMENT_KINDS > 0) {
-        mask escaped = active & !hit;
+        uints environment = (uints)(scene->settings->environment);
+        mask escaped = active & !hit & to_mask(environment != OPAL_NONE);
         *met = *met | escaped;
-        id = uints_pick(escaped, (uints)(0), id);
+        id = uints_pick(escaped, environment, id);
     }
     return OPAL_HAS_many_emitters ? uints_pick(*met, id, (uints)(0)) : (uints)(0);
 }

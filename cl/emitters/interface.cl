@@ -33,7 +33,7 @@ typedef struct {
                       // densities that overflow near a light.
     v3 end;           // of the shadow ray; unset where the light is infinitely far
     mask active;      // the light is seen from there unless something is between
-    mask discrete, infinite; // traits of the light (DELTA_LIGHT, INFINITE_LIGHT), which dispatch.cl sets
+    mask discrete, infinite; // traits of the light (OPAL_DELTA, OPAL_INFINITE), which dispatch.cl sets
 } LightSample;
 
 static LightSample light_sample_of(v3 d, real distance, v3 radiance, real inverse_pdf, v3 end, mask active) {

@@ -1,24 +1,39 @@
-// The emitters: one row and one file cl/emitters/NAME.cl each.
+// The emitters: a row, a list of parameters and a record here, one file cl/emitters/NAME.cl and one file
+// host/flatten/emitter_NAME.cpp each.
 #ifndef OPAL_EMITTER_LIST_H
 #define OPAL_EMITTER_LIST_H
 
 #include "shared/glue.h"
 
-// Traits, as bits.
+// Traits of a kind, as bits.
 enum {
-    SURFACE_LIGHT = 1,  // a ray meets it on a surface, whose mesh names it
-    DELTA_LIGHT = 2,    // seen in one direction from each point: no ray meets it by chance
-    INFINITE_LIGHT = 4, // infinitely far: shadow rays have no end
+    OPAL_SURFACE = 1, // a ray meets it on a surface, whose mesh names it
+    OPAL_DELTA = 2,   // seen in one direction from each point: no ray meets it by chance
+    OPAL_INFINITE = 4 // infinitely far: shadow rays have no end
 };
-#define CAN_BE_MET(traits) (((traits) & DELTA_LIGHT) == 0) // by a BSDF sample
-// Is it met by rays that leave the scene?
-#define IS_ENVIRONMENT(traits) (((traits) & (INFINITE_LIGHT | DELTA_LIGHT)) == INFINITE_LIGHT)
+#define OPAL_CAN_BE_MET(traits) (((traits) & OPAL_DELTA) == 0) // by a BSDF sample
+// Is it met by rays that leave the scene? A scene has one such light at most.
+#define OPAL_IS_ENVIRONMENT(traits) (((traits) & (OPAL_INFINITE | OPAL_DELTA)) == OPAL_INFINITE)
 
-// EMITTER(name, traits)
-#define OPAL_EMITTERS(EMITTER) \
-    EMITTER(mesh, SURFACE_LIGHT)          /* a triangle mesh that emits */ \
-    EMITTER(parallelogram, SURFACE_LIGHT) /* a parallelogram that emits, sampled as one piece */ \
-    EMITTER(point, DELTA_LIGHT)           /* a point */
+// EMITTER(name, traits). Emitters of meshes: the shape and its <emitter type="area"> describe them.
+#define OPAL_MESH_EMITTERS(EMITTER) \
+    EMITTER(mesh, OPAL_SURFACE)          /* a triangle mesh that emits */ \
+    EMITTER(parallelogram, OPAL_SURFACE) /* a parallelogram that emits, sampled as one piece */
+
+// Emitters of scenes: NAME is also the XML type.
+#define OPAL_SCENE_EMITTERS(EMITTER) \
+    EMITTER(point, OPAL_DELTA)      /* a point that emits alike in all directions */ \
+    EMITTER(constant, OPAL_INFINITE) /* an environment of one radiance */
+
+#define OPAL_EMITTERS(EMITTER) OPAL_MESH_EMITTERS(EMITTER) OPAL_SCENE_EMITTERS(EMITTER)
+
+// Their parameters in the scene file (shared/parameters.h), from which the host makes the struct emitter_NAME.
+#define OPAL_EMITTER_point(PARAMETER) \
+    PARAMETER(POINT, position, "position", REQUIRED, ANY, "position") \
+    PARAMETER(COLOR, power, "power", REQUIRED, AT_LEAST(0), "power, W; the intensity is power / (4 pi)")
+
+#define OPAL_EMITTER_constant(PARAMETER) \
+    PARAMETER(COLOR, radiance, "radiance", 1, AT_LEAST(0), "radiance, W / (m^2 sr)")
 
 #define OPAL_EMITTER_ENUM(name, traits) EMITTER_##name,
 enum { OPAL_EMITTERS(OPAL_EMITTER_ENUM) EMITTER_COUNT };
@@ -29,22 +44,43 @@ namespace opal {
 
 #define OPAL_ALIAS_ROWS 0x100000u // an alias table of more rows is drawn from by 32 bits, others by 24
 
-// One emitter. Positions and areas are in the flattened scene's units (FlatScene::center, FlatScene::scale).
+// The records of the kinds. Positions and areas are in the flattened scene's units (FlatScene::center,
+// FlatScene::scale); radiance in W / (m^2 sr).
+typedef struct {
+    float radiance[3];
+    uint first_triangle;  // index of the first of its triangles, whose rows follow their order
+} emitter_mesh_record;
+
+typedef struct {
+    float radiance[3];
+    float origin[3];      // a corner
+    float u[3], v[3];     // the edges from there
+    float normal[3];      // u x v, unit; it emits on that side
+    float area;
+} emitter_parallelogram_record;
+
+typedef struct {
+    float position[3];
+    float intensity[3];   // W / sr, times FlatScene::scale^2
+} emitter_point_record;
+
+typedef struct {
+    float radiance[3];
+} emitter_constant_record;
+
+// One emitter. Lanes read the record of a kind from emitters of another kind too, and drop what they read: a member that
+// is an index into a table must stand before `u`.
+#define OPAL_EMITTER_MEMBER(name, traits) emitter_##name##_record of_##name; // "constant" alone is a keyword of OpenCL C
 typedef struct {
     uint kind;            // EMITTER_*
-    float radiance[3];    // W / (m^2 sr); point: intensity, W / sr, times FlatScene::scale^2
-    float origin[3];      // parallelogram: a corner; point: its position
-    float area;           // of the whole emitter
-    float inverse_area;   // 1 / area
-    float u[3], v[3];     // parallelogram: its edges
-    float normal[3];      // parallelogram: u x v, unit; it emits on that side
-    uint first, count;    // mesh: its rows of the light triangles, in the order of its triangles
-    uint first_triangle;  // mesh: index of the first of these triangles
     float probability;    // of choosing it (--emitter-choice), as the alias table and the random numbers' grid have it
     float accept;         // alias table: keep this row if a uniform number is below, else take row `other`
     uint other;
+    uint first, count;    // its rows of a table; of a mesh, of the light triangles. Others: 0, 0
+    union {
+        OPAL_EMITTERS(OPAL_EMITTER_MEMBER)
+    } u;
 } EmitterRecord;
-OPAL_SIZE_CHECK(EmitterRecord, 96);
 
 // One triangle of a mesh light, with its row of the mesh's alias table (Vose 1991). `other` counts from the mesh's
 // first.

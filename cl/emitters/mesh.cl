@@ -24,16 +24,16 @@ static LightSample emitter_mesh_sample(const Scene *scene, uints id, ReferencePo
     v3 shading = shading_normal(scene, corner_normals(scene, triangle_id(scene, slot)), b1, b2, normal);
     return sample_of_point(from, v3_mad(e1, b1, v3_mad(e2, b2, p0)), normal, shading,
                            GATHER(real, scene->light_triangles, row, .inverse_pdf), ray_offset_of(p0, p1, p2),
-                           GATHER_V3(scene->emitters, id, .radiance));
+                           GATHER_V3(scene->emitters, id, .u.of_mesh.radiance));
 }
 
 static v3 emitter_mesh_radiance(const Scene *scene, uints id, v3 d, Surface s) {
-    return GATHER_V3(scene->emitters, id, .radiance);
+    return GATHER_V3(scene->emitters, id, .u.of_mesh.radiance);
 }
 
 static real emitter_mesh_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, Surface s) {
-    uints place = s.primitive - GATHER(uints, scene->emitters, id, .first_triangle);
-    // The rows of other lanes' emitters may not exist.
+    uints place = s.primitive - GATHER(uints, scene->emitters, id, .u.of_mesh.first_triangle);
+    // In other lanes `place` may be anything.
     uints row = uints_pick(to_mask(place < GATHER(uints, scene->emitters, id, .count)),
                            GATHER(uints, scene->emitters, id, .first) + place, (uints)(0));
     return pdf_of_hit(GATHER(real, scene->light_triangles, row, .inverse_pdf), d, s);

@@ -8,18 +8,19 @@
 #include "surface.cl"
 
 static LightSample emitter_parallelogram_sample(const Scene *scene, uints id, ReferencePoint from, v2 u, u2 bits) {
-    v3 corner = GATHER_V3(scene->emitters, id, .origin);
-    v3 e1 = GATHER_V3(scene->emitters, id, .u), e2 = GATHER_V3(scene->emitters, id, .v);
-    v3 normal = GATHER_V3(scene->emitters, id, .normal);
+    v3 corner = GATHER_V3(scene->emitters, id, .u.of_parallelogram.origin);
+    v3 e1 = GATHER_V3(scene->emitters, id, .u.of_parallelogram.u), e2 = GATHER_V3(scene->emitters, id, .u.of_parallelogram.v);
+    v3 normal = GATHER_V3(scene->emitters, id, .u.of_parallelogram.normal);
     real offset = ray_offset_of(corner, v3_add(corner, v3_add(e1, e2)), v3_add(corner, e1));
     return sample_of_point(from, v3_mad(e1, u.x, v3_mad(e2, u.y, corner)), normal, normal,
-                           GATHER(real, scene->emitters, id, .area), offset, GATHER_V3(scene->emitters, id, .radiance));
+                           GATHER(real, scene->emitters, id, .u.of_parallelogram.area), offset,
+                           GATHER_V3(scene->emitters, id, .u.of_parallelogram.radiance));
 }
 
 static v3 emitter_parallelogram_radiance(const Scene *scene, uints id, v3 d, Surface s) {
-    return GATHER_V3(scene->emitters, id, .radiance);
+    return GATHER_V3(scene->emitters, id, .u.of_parallelogram.radiance);
 }
 
 static real emitter_parallelogram_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, Surface s) {
-    return pdf_of_hit(GATHER(real, scene->emitters, id, .area), d, s);
+    return pdf_of_hit(GATHER(real, scene->emitters, id, .u.of_parallelogram.area), d, s);
 }

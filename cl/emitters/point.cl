@@ -8,9 +8,9 @@
 #include "surface.cl"
 
 static LightSample emitter_point_sample(const Scene *scene, uints id, ReferencePoint from, v2 u, u2 bits) {
-    v3 p = GATHER_V3(scene->emitters, id, .origin), to_light = v3_sub(p, from.p);
+    v3 p = GATHER_V3(scene->emitters, id, .u.of_point.position), to_light = v3_sub(p, from.p);
     real distance2 = v3_dot(to_light, to_light), inverse_distance = rsqrt(distance2);
-    v3 intensity = GATHER_V3(scene->emitters, id, .radiance);
+    v3 intensity = GATHER_V3(scene->emitters, id, .u.of_point.intensity);
     return light_sample_of(v3_scale(to_light, inverse_distance), distance2 * inverse_distance,
                            v3_scale(intensity, square(inverse_distance)), (real)(1), p, inverse_distance < FAR);
 }

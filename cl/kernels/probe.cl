@@ -118,13 +118,13 @@ static u2 bits_of(v2 u) {
     return bits;
 }
 
-// A direction from a point in free space to a chosen emitter; the density is that of both choices.
-kernel void light_draw(SCENE_PARAMETERS, float from_x, float from_y, float from_z, global const float *given,
-                       global float *out, uint first, uint stride) {
+// Directions from points in free space to chosen emitters; the density is that of both choices.
+kernel void light_draw(SCENE_PARAMETERS, global const float *points, global const float *given, global float *out,
+                       uint first, uint stride) {
     uint base = base_of_item(first);
     if (base >= stride) return;
     Scene scene = SCENE_OF_PARAMETERS;
-    ReferencePoint from = {v3_of((real)(from_x), (real)(from_y), (real)(from_z)), v3_all((real)(0))};
+    ReferencePoint from = {get_v3(points, 0, stride, base), v3_all((real)(0))};
     EmitterChoice choice = emitter_choose(&scene, from, bits_of(get_v2(given, 0, stride, base)));
     LightSample s = emitter_sample(&scene, choice.id, from, get_v2(given, 2, stride, base),
                                    bits_of(get_v2(given, 4, stride, base)), ALL_LANES);

@@ -11,13 +11,15 @@
 // Records whose sizes, and members whose offsets, must be the same on both sides.
 #define OPAL_RECORDS(RECORD) \
     RECORD(BvhNode) RECORD(TriangleBlock) RECORD(Triangle) RECORD(FaceRecord) RECORD(FaceRange) RECORD(MeshRecord) \
-    RECORD(Settings) RECORD(CameraRecord) RECORD(EmitterRecord) RECORD(LightTriangle)
+    RECORD(Settings) RECORD(CameraRecord) RECORD(EmitterRecord) RECORD(LightTriangle) \
+    OPAL_EMITTERS(OPAL_EMITTER_SIZE)
+#define OPAL_EMITTER_SIZE(name, traits) OPAL_SIZE(emitter_##name##_record)
 #define OPAL_MEMBERS(MEMBER) \
     MEMBER(BvhNode, hi) MEMBER(BvhNode, child) MEMBER(TriangleBlock, id) MEMBER(Triangle, mesh) \
     MEMBER(FaceRecord, corner) MEMBER(MeshRecord, emitter) MEMBER(CameraRecord, forward) \
     MEMBER(CameraRecord, own) MEMBER(Settings, face_list_slot) MEMBER(Settings, rr_prob) \
     MEMBER(Settings, light_energy) MEMBER(Settings, filter_c) MEMBER(Settings, choices) \
-    MEMBER(EmitterRecord, area) MEMBER(EmitterRecord, v) MEMBER(EmitterRecord, probability) MEMBER(EmitterRecord, other) \
+    MEMBER(EmitterRecord, probability) MEMBER(EmitterRecord, other) MEMBER(EmitterRecord, u) \
     MEMBER(LightTriangle, inverse_pdf)
 
 // Says the layout of all records by the statements OPAL_SIZE(T) and OPAL_OFFSET(T, member), which either side defines.

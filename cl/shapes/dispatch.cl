@@ -52,6 +52,7 @@ static BlockTest intersect_leaf(Leaf leaf, uint place, const LaneRay *ray) {
 // The surface that each active lane hit; the others get any that there is.
 static Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask active) {
     Surface s = no_surface();
+    if (!ANY(active)) return s; // the scene may have none
 #define SURFACE(name, Block) \
     if (OPAL_HAS_shape_##name) { \
         if (SHAPE_KINDS == 1) return surface_of_##name(scene, ray, hit, active); \

@@ -66,6 +66,7 @@ typedef struct {
     FaceRange face_list_to_light;   // the faces that may occlude a light
     uint face_list_slot;            // of the face list's first triangle: block * 8
     uint emitter_count;
+    uint environment;               // the emitter that rays meet where they leave the scene, or OPAL_NONE
     uint max_depth;                 // most segments of a path (1: emitters, 2: direct light); OPAL_NONE: no limit
     uint rr_depth;                  // roulette starts when a path has this many segments
     float rr_prob;                  // --rr fixed: probability to survive, a multiple of 2^-24 as random numbers are
@@ -78,7 +79,7 @@ typedef struct {
     float filter_b, filter_c;       // mitchell
     int choices[AXIS_COUNT];        // CHOICE_* of each axis; read by the general kernel only
 } Settings;
-OPAL_SIZE_CHECK(Settings, 100 + 4 * AXIS_COUNT);
+OPAL_SIZE_CHECK(Settings, 104 + 4 * AXIS_COUNT);
 
 #ifdef __cplusplus
 }

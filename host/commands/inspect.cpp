@@ -53,6 +53,20 @@ std::string counts_text(const std::map<std::string, size_t> &counts) {
     return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
+std::string value_text(const Color &color) { return color_text(color); }
+[[maybe_unused]] std::string value_text(double number) { return fmt::format("{:g}", number); }
+[[maybe_unused]] std::string value_text(bool flag) { return flag ? "true" : "false"; }
+std::string value_text(Vec3 p) { return fmt::format("{:g} {:g} {:g}", p.x, p.y, p.z); }
+
+// "position 0 1 0, power 10 10 10"
+std::string parameters_text(Light light) {
+    std::vector<std::string> parts;
+    light.visit([&](const Parameter &parameter, const auto &value) {
+        parts.push_back(fmt::format("{} {}", parameter.xml_name, value_text(value)));
+    });
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
 void print_mesh(const Mesh &mesh) {
     row("", "{}: {}, {}{}", mesh.name, std::visit([](const auto &shape) { return shape.text(); }, mesh.shape),
         bsdf_name(mesh.bsdf.kind()), mesh.radiance ? ", emits " + color_text(*mesh.radiance) + " W/(m^2 sr)" : "");
@@ -76,8 +90,8 @@ void print_scene(const SceneDescription &scene, const FlatScene &flat) {
         different.insert(mesh.bsdf);
     row("bsdfs", "{} ({} different)", counts_text(bsdfs), different.size());
     row("emitters", "{}", counts_text(emitters));
-    for (const PointLight &light : scene.point_lights)
-        row("", "point light, {} W", color_text(light.power));
+    for (const Light &light : scene.lights)
+        row("", "{}: {}", emitter_name(light.kind()), parameters_text(light));
     row("meshes", "{}, {} triangles", scene.meshes.size(), flat.triangles.size());
     for (const Mesh &mesh : scene.meshes)
         print_mesh(mesh);

@@ -22,6 +22,7 @@ struct WarpRow {
 constexpr WarpRow warps[] = {OPAL_WARPS(OPAL_WARP_ROW, OPAL_WARP_ROW, OPAL_LOBE_ROW)};
 
 constexpr double turn = 2 * std::numbers::pi, far_away = 1e30;
+constexpr Vec3 no_point = {NAN, NAN, NAN}; // outside of every domain
 
 double angle_of(Vec3 w) { // azimuth in [0, 2 pi)
     const double phi = std::atan2(w.y, w.x);
@@ -130,34 +131,59 @@ Planes rays_from(Vec3 from, std::span<const Vec3> directions) {
     return rays;
 }
 
-Sampled sampled_lights(KernelProbe &probe, Vec3 from) {
+namespace {
+
+// Directions to lights around the scene.
+Sampled sampled_environment(KernelProbe &probe, Vec3 flat_from) {
+    Sampled sampled;
+    sampled.name = "light";
+    sampled.domain = &stats::domain(DomainKind::sphere);
+    sampled.draw = [&probe, flat_from](const Planes &numbers, stats::Histogram &histogram) {
+        const Planes drawn = probe.light_sample(flat_from, numbers);
+        for (size_t i = 0; i < drawn.count; i++)
+            histogram.add(drawn.at(LIGHT_ACTIVE, i) ? drawn.vec3(LIGHT_D_X, i) : no_point);
+    };
+    sampled.density = [&probe, flat_from](std::span<const Vec3> directions, std::span<double> values) {
+        const Planes hits = probe.trace(rays_from(flat_from, directions));
+        for (size_t i = 0; i < directions.size(); i++)
+            values[i] = hits.at(HIT_LIGHT_DENSITY, i);
+    };
+    return sampled;
+}
+
+// Points on lights in the unit square.
+Sampled sampled_square(KernelProbe &probe, Vec3 from, Vec3 flat_from) {
     Sampled sampled;
     sampled.name = "light";
     sampled.domain = &stats::domain(DomainKind::square);
-    const Vec3 center = probe.scene().center;
-    const double scale = probe.scene().scale;
-    const Vec3 flat_from = (from - center) * scale;
-    sampled.may_fail = true;
-    sampled.draw = [&probe, from, flat_from, scale](const Planes &numbers, stats::Histogram &histogram) {
+    sampled.draw = [&probe, from, flat_from](const Planes &numbers, stats::Histogram &histogram) {
         const Planes drawn = probe.light_sample(flat_from, numbers);
-        for (size_t i = 0; i < drawn.count; i++)
-            if (drawn.at(LIGHT_ACTIVE, i) == 0)
-                histogram.add_failed();
-            else
-                histogram.add(from + drawn.vec3(LIGHT_D_X, i) * (drawn.at(LIGHT_DISTANCE, i) / scale));
+        for (size_t i = 0; i < drawn.count; i++) {
+            const double distance = drawn.at(LIGHT_DISTANCE, i) / probe.scene().scale;
+            histogram.add(drawn.at(LIGHT_ACTIVE, i) ? from + drawn.vec3(LIGHT_D_X, i) * distance : no_point);
+        }
     };
     sampled.density = [&probe, from, flat_from](std::span<const Vec3> points, std::span<double> values) {
         std::vector<Vec3> directions;
         for (Vec3 point : points)
             directions.push_back(normalize(point - from));
         const Planes hits = probe.trace(rays_from(flat_from, directions));
-        for (size_t i = 0; i < points.size(); i++) { // from solid angle to area, in the scene's own units
+        for (size_t i = 0; i < points.size(); i++) { // from solid angle to area
             const Vec3 to_point = points[i] - from;
             values[i] = hits.at(HIT_LIGHT_DENSITY, i) * std::abs(directions[i].z) / dot(to_point, to_point);
         }
     };
     sampled.relative_error = 2e-3; // it jumps from triangle to triangle
     return sampled;
+}
+
+} // namespace
+
+Sampled sampled_lights(KernelProbe &probe, Vec3 from) {
+    const FlatScene &scene = probe.scene();
+    const Vec3 flat_from = (from - scene.center) * scene.scale;
+    return scene.settings.environment == OPAL_NONE ? sampled_square(probe, from, flat_from)
+                                                   : sampled_environment(probe, flat_from);
 }
 
 void draw_in_batches(KernelProbe &probe, size_t count, unsigned seed, const std::function<void(const Planes &)> &use) {

@@ -57,22 +57,44 @@ std::string with_hyphens(std::string name) {
     return name;
 }
 
-// As a scene would say it, so that defaults and checks are the scene's.
-Bsdf parse_parameters(uint kind, const Parameters &parameters) {
-    std::string xml = fmt::format("<bsdf type=\"{}\">", bsdf_name(kind));
-    std::set<std::string> known = {"theta", "phi"};
-    for (const Parameter &parameter : bsdf_parameters(kind)) {
-        const std::string name = with_hyphens(parameter.name);
-        known.insert(name);
-        const auto found = parameters.find(name);
-        if (found == parameters.end())
-            continue;
-        const bool grey = parameter.type == ParameterType::COLOR && split(found->second).size() == 1;
-        const std::string value = grey ? fmt::format("{0} {0} {0}", found->second) : found->second;
-        xml += fmt::format("<{} name=\"{}\" value=\"{}\"/>", xml_tag(parameter.type), parameter.xml_name, value);
+// Some value, for a parameter that is required.
+std::string example_value(ParameterType type) {
+    switch (type) {
+    case ParameterType::COLOR:
+        return "3 2 1";
+    case ParameterType::POINT:
+        return "0.3 0.6 0.8";
+    case ParameterType::VECTOR:
+        return "0.2 -0.3 -1";
+    default:
+        return "1";
     }
-    allow(parameters, fmt::format("bsdf:{}", bsdf_name(kind)), known);
-    const XmlDocument document("command line, as XML", xml + "</bsdf>");
+}
+
+// An object as a scene would say it, so that defaults and checks are the scene's; `others`: known parameters that are
+// none of its own.
+XmlDocument xml_of(const std::string &tag, const std::string &kind, std::span<const Parameter> rows,
+                   const Parameters &parameters, const std::string &target, std::set<std::string> others = {}) {
+    std::string xml = fmt::format("<{} type=\"{}\">", tag, kind);
+    for (const Parameter &row : rows) {
+        const std::string name = with_hyphens(row.name);
+        others.insert(name);
+        const auto found = parameters.find(name);
+        if (found == parameters.end() && !std::isnan(row.initial))
+            continue;
+        std::string value = found == parameters.end() ? example_value(row.type) : found->second;
+        if (row.type == ParameterType::COLOR && split(value).size() == 1)
+            value = fmt::format("{0} {0} {0}", value);
+        xml += fmt::format("<{} name=\"{}\" value=\"{}\"/>", xml_tag(row.type), row.xml_name, value);
+    }
+    allow(parameters, target, others);
+    return XmlDocument("command line, as XML", xml + fmt::format("</{}>", tag));
+}
+
+Bsdf parse_parameters(uint kind, const Parameters &parameters) {
+    const std::string name = bsdf_name(kind);
+    const XmlDocument document =
+        xml_of("bsdf", name, bsdf_parameters(kind), parameters, "bsdf:" + name, {"theta", "phi"});
     return parse_bsdf(document.root(), {});
 }
 
@@ -126,33 +148,56 @@ const std::vector<LightRow> lights = {
      }},
 };
 
-Target open_light(const LightRow &row, const Parameters &parameters, const Parameters &axes, const Device &device,
-                  const BuildOptions &build, const Sources &sources) {
-    allow(parameters, "light:" + std::string(row.name), {});
+// An emitter of scenes whose directions have a density.
+bool is_light_target(uint kind) { return can_be_met(kind) && !emitter_parameters(kind).empty(); }
+
+// The lights named `name`.
+SceneDescription scene_of_lights(const std::string &name, const Parameters &parameters) {
     SceneDescription scene;
-    scene.meshes = row.meshes();
+    for (uint kind = 0; kind < EMITTER_COUNT; kind++)
+        if (is_light_target(kind) && name == emitter_name(kind)) {
+            scene.lights.push_back(light_of_parameters(kind, parameters));
+            return scene;
+        }
+    allow(parameters, "light:" + name, {});
+    scene.meshes = find_row(lights, "light", name).meshes();
+    return scene;
+}
+
+Target open_light(const std::string &name, const Parameters &parameters, const Parameters &axes, const Device &device,
+                  const BuildOptions &build, const Sources &sources) {
+    SceneDescription scene = scene_of_lights(name, parameters);
     apply_integrator(scene.strategy, find_integrator("path_mis"));
     override_strategy(scene.strategy, axes);
     Target target;
     target.probe = std::make_unique<KernelProbe>(device, flatten(scene, build.lanes), build, sources);
     target.sampled = sampled_lights(*target.probe);
-    target.description = fmt::format("light {}", row.name);
-    for (const auto &[name, value] : axes)
-        target.description += fmt::format(" {} {}", name, value);
+    target.description = fmt::format("light {}", name);
+    for (const Parameters *given : {&parameters, &axes})
+        for (const auto &[option, value] : *given)
+            target.description += fmt::format(" {} {}", option, value);
     return target;
+}
+
+std::string names_of(std::span<const Parameter> parameters) {
+    std::vector<std::string> names;
+    for (const Parameter &parameter : parameters)
+        names.push_back(with_hyphens(parameter.name));
+    return fmt::format("{}", fmt::join(names, ", "));
 }
 
 std::vector<TargetName> all_targets() {
     std::vector<TargetName> names = warp_names;
     for (uint kind = 0; kind < BSDF_COUNT; kind++)
         if (bsdf_traits(kind) & OPAL_SMOOTH) {
-            std::string parameters;
-            for (const Parameter &parameter : bsdf_parameters(kind))
-                parameters += with_hyphens(parameter.name) + ", ";
-            names.push_back({fmt::format("bsdf:{}", bsdf_name(kind)), parameters + "theta, phi"});
+            const std::string own = names_of(bsdf_parameters(kind));
+            names.push_back({fmt::format("bsdf:{}", bsdf_name(kind)), own + (own.empty() ? "" : ", ") + "theta, phi"});
         }
     for (const LightRow &light : lights)
         names.push_back({"light:" + std::string(light.name), "triangle-choice, emitter-choice"});
+    for (uint kind = 0; kind < EMITTER_COUNT; kind++)
+        if (is_light_target(kind))
+            names.push_back({fmt::format("light:{}", emitter_name(kind)), names_of(emitter_parameters(kind))});
     return names;
 }
 
@@ -178,10 +223,21 @@ std::vector<TargetParameter> all_parameters() {
             for (const Parameter &p : bsdf_parameters(kind))
                 add_meaning(all, with_hyphens(p.name), bsdf_name(kind),
                             fmt::format("{}, {} [{}]", p.meaning, text_of(p), text_of_initial(p)));
+    for (uint kind = 0; kind < EMITTER_COUNT; kind++)
+        if (is_light_target(kind))
+            for (const Parameter &p : emitter_parameters(kind))
+                add_meaning(all, with_hyphens(p.name), emitter_name(kind),
+                            fmt::format("{}, {} [{}]", p.meaning, text_of(p), text_of_initial(p)));
     return all;
 }
 
 } // namespace
+
+Light light_of_parameters(uint kind, const Parameters &parameters) {
+    const std::string name = emitter_name(kind);
+    const XmlDocument document = xml_of("emitter", name, emitter_parameters(kind), parameters, "light:" + name);
+    return parse_scene_emitter(document.root(), {});
+}
 
 const std::vector<TargetName> &targets() {
     static const std::vector<TargetName> all = all_targets();
@@ -197,7 +253,7 @@ Target open_target(const std::string &name, const Parameters &parameters, const 
                    const BuildOptions &build, const Sources &sources) {
     find_row(targets(), "warp", name);
     if (name.starts_with("light:"))
-        return open_light(find_row(lights, "light", name.substr(6)), parameters, axes, device, build, sources);
+        return open_light(name.substr(6), parameters, axes, device, build, sources);
     if (!axes.empty())
         throw Error(fmt::format("--{} means something for light:... only", axes.begin()->first));
     for (uint kind = 0; kind < BSDF_COUNT; kind++)

@@ -21,6 +21,9 @@ struct TargetName {
 };
 const std::vector<TargetName> &targets();
 
+// An emitter of scenes by its parameters as the command line names them; what is required and not given is made up.
+Light light_of_parameters(uint kind, const std::map<std::string, std::string> &parameters);
+
 // A parameter as the command line names it.
 struct TargetParameter {
     std::string name, help;

@@ -9,13 +9,18 @@ namespace {
 // An arbitrary rotation, so that no coordinate is exact by chance.
 const Transform rotation = Transform::rotate({1, 2, 3}, 34) * Transform::rotate({0, 1, 0}, 21);
 
+template <class Value> Value moved(const Value &value, ParameterType, const Transform &) { return value; }
+Vec3 moved(Vec3 value, ParameterType type, const Transform &by) {
+    return type == ParameterType::POINT ? by.point(value) : by.vector(value);
+}
+
 } // namespace
 
 SceneDescription moved(SceneDescription scene, const Transform &by) {
     for (Mesh &mesh : scene.meshes)
         std::visit([&](auto &shape) { shape = shape.moved(by); }, mesh.shape);
-    for (PointLight &l : scene.point_lights)
-        l.position = by.point(l.position);
+    for (Light &light : scene.lights)
+        light.visit([&](const Parameter &parameter, auto &value) { value = moved(value, parameter.type, by); });
     scene.camera.to_world = by * scene.camera.to_world;
     return scene;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "flatten/geometry.h"
+#include "flatten/store.h"
 
 namespace opal {
 
@@ -12,11 +13,5 @@ CameraRecord flatten_camera(const Camera &camera, const Flattening &flattening);
 #define OPAL_FILL_CAMERA(name, record, traits) void fill_##name(const Camera &camera, double scale, record &own);
 OPAL_CAMERAS(OPAL_FILL_CAMERA)
 #undef OPAL_FILL_CAMERA
-
-// Stores a vector as floats.
-inline void store(Vec3 from, float (&to)[3]) {
-    for (int i = 0; i < 3; i++)
-        to[i] = float(from[i]);
-}
 
 } // namespace opal

@@ -1,7 +1,11 @@
 #include "flatten/emitters.h"
 
+#include "base/error.h"
 #include "bvh/binary_tree.h"
 #include "flatten/distribution.h"
+#include "flatten/emitter_kinds.h"
+
+#include <fmt/format.h>
 
 #include <numbers>
 
@@ -11,16 +15,8 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 bool is_black(const Color &c) { return c[0] == 0 && c[1] == 0 && c[2] == 0; }
-void store(const Color &from, double factor, float (&to)[3]) {
-    for (int i = 0; i < 3; i++)
-        to[i] = float(from[i] * factor);
-}
-void store(Vec3 from, float (&to)[3]) {
-    for (int i = 0; i < 3; i++)
-        to[i] = float(from[i]);
-}
 
-// The slot of each triangle's vertices, by triangle id: block * block_size + place in the block, as in a Hit.
+// The slot of each triangle's vertices, by triangle id (EmittingMesh::slots).
 std::vector<uint> triangle_slots(const FlatScene &scene) {
     std::vector<uint> slots(scene.triangles.size());
     for (uint slot = 0; slot < scene.triangle_blocks.size() * block_size; slot++) {
@@ -44,18 +40,13 @@ public:
             while (end < scene_.triangles.size() && scene_.triangles[end].mesh == mesh)
                 end++;
             const auto &radiance = description_.meshes[mesh].radiance;
-            if (!radiance || is_black(*radiance) || begin == end)
-                continue;
-            EmitterRecord record{};
-            store(*radiance, 1, record.radiance);
-            const double area = std::holds_alternative<Parallelogram>(description_.meshes[mesh].shape)
-                                    ? add_parallelogram(begin, record)
-                                    : add_mesh(begin, end, record);
-            scene_.meshes[mesh].emitter = add(record, pi * luminance(*radiance) * area);
+            if (radiance && !is_black(*radiance) && begin != end)
+                scene_.meshes[mesh].emitter = add_mesh(description_.meshes[mesh], begin, end);
         }
-        for (const PointLight &light : description_.point_lights)
-            if (!is_black(light.power))
-                add_point(light);
+        const double radius = extent_of(description_).radius();
+        for (const Light &light : description_.lights)
+            if (!is_black(light))
+                add_light(light, radius);
         fill_emitter_choice();
     }
 
@@ -73,55 +64,32 @@ private:
         return uint(scene_.emitters.size() - 1);
     }
 
-    // Adds a parallelogram by its first triangle, whose corners are o, o + u and o + v. Returns the area.
-    double add_parallelogram(uint triangle, EmitterRecord &record) {
-        const auto &[o, u, v] = soup_.corners[triangle];
-        record.kind = EMITTER_parallelogram;
-        for (int axis = 0; axis < 3; axis++) {
-            record.origin[axis] = soup_.vertices[o][axis];
-            record.u[axis] = soup_.vertices[u][axis] - soup_.vertices[o][axis];
-            record.v[axis] = soup_.vertices[v][axis] - soup_.vertices[o][axis];
-        }
-        const Vec3 normal = normal_of(soup_.vertices[o], soup_.vertices[u], soup_.vertices[v]);
-        const double area = length(normal);
-        store(normal * (1 / area), record.normal);
-        record.area = float(area);
-        record.inverse_area = float(1 / area);
-        return area;
-    }
-
-    // Adds a mesh of triangles [begin, end). Returns the area.
-    double add_mesh(uint begin, uint end, EmitterRecord &record) {
+    uint add_mesh(const Mesh &mesh, uint begin, uint end) {
         if (slots_.empty())
             slots_ = triangle_slots(scene_);
-        std::vector<double> areas;
-        double area = 0;
-        for (uint id = begin; id < end; id++) {
-            const auto &[a, b, c] = soup_.corners[id];
-            areas.push_back(0.5 * length(normal_of(soup_.vertices[a], soup_.vertices[b], soup_.vertices[c])));
-            area += areas.back();
-        }
-        record.kind = EMITTER_mesh;
-        record.area = float(area);
-        record.inverse_area = float(1 / area);
-        record.first = uint(scene_.light_triangles.size());
-        record.count = end - begin;
-        record.first_triangle = begin;
         const bool uniform = description_.strategy[AXIS_triangle_choice] == CHOICE_triangle_choice_uniform;
-        const AliasTable table = build_alias_table(uniform ? std::vector<double>(areas.size(), 1.0) : areas);
-        for (uint i = 0; i < record.count; i++)
-            scene_.light_triangles.push_back(
-                {slots_[begin + i], float(table.accept[i]), table.other[i], float(areas[i] / table.probability[i])});
-        return area;
+        const EmittingMesh from{mesh, begin, end, soup_, slots_, uniform};
+        EmitterRecord record{};
+        const bool whole = std::holds_alternative<Parallelogram>(mesh.shape);
+        record.kind = whole ? EMITTER_parallelogram : EMITTER_mesh;
+        const double area = whole ? flatten_parallelogram(from, record, scene_) : flatten_mesh(from, record, scene_);
+        return add(record, pi * luminance(*mesh.radiance) * area);
     }
 
-    void add_point(const PointLight &light) {
+    void add_light(const Light &light, double radius) {
+        if (is_environment(light.kind())) {
+            if (scene_.settings.environment != OPAL_NONE)
+                throw Error(fmt::format("{}: a second environment: rays that leave the scene meet one only",
+                                        light.place.text()));
+            scene_.settings.environment = uint(scene_.emitters.size());
+        }
         EmitterRecord record{};
-        record.kind = EMITTER_point;
-        const double scale2 = flattening_.scale * flattening_.scale;
-        store(light.power, scale2 / (4 * pi), record.radiance);
-        store((light.position - flattening_.center) * flattening_.scale, record.origin);
-        add(record, luminance(light.power) * scale2);
+        record.kind = light.kind();
+#define OPAL_STORE_EMITTER(name, traits)                                                                               \
+    if (const auto *own = std::get_if<emitter_##name>(&light.parameters))                                              \
+        record.u.of_##name = flattened(*own, flattening_);
+        OPAL_SCENE_EMITTERS(OPAL_STORE_EMITTER)
+        add(record, power_of(light, radius) * flattening_.scale * flattening_.scale);
     }
 
     void fill_emitter_choice() {
@@ -140,7 +108,9 @@ private:
 
 void gather_emitters(const SceneDescription &description, const Flattening &flattening, const TriangleSoup &soup,
                      FlatScene &scene) {
+    scene.settings.environment = OPAL_NONE;
     EmitterGatherer(description, flattening, soup, scene).gather();
+    scene.settings.emitter_count = uint(scene.emitters.size());
 }
 
 } // namespace opal

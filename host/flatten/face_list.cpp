@@ -227,10 +227,10 @@ void build_tree(const TriangleSoup &soup, const std::vector<Face> &faces, FlatSc
 #undef OPAL_FILL_BLOCKS
 }
 
-void list_faces(const TriangleSoup &soup, std::vector<Face> faces, const std::vector<Point3f> &lights,
+void list_faces(const TriangleSoup &soup, std::vector<Face> faces, const std::optional<std::vector<Point3f>> &lights,
                 FlatScene &scene) {
-    const auto idle = std::stable_partition(faces.begin(), faces.end(),
-                                            [&](const Face &face) { return !never_blocks(face, soup, lights); });
+    const auto may_block = [&](const Face &face) { return !lights || !never_blocks(face, soup, *lights); };
+    const auto idle = std::stable_partition(faces.begin(), faces.end(), may_block);
     scene.settings.face_list_slot = uint(scene.triangle_blocks.size()) * 8;
     std::map<Point3f, uint> vertices;
     std::vector<uint> shapes, ids; // by slot: a triangle of its shape, and of its id

@@ -31,8 +31,9 @@ void build_tree(const TriangleSoup &soup, const std::vector<Face> &faces, FlatSc
 
 // Appends the blocks of the face list to scene.triangle_blocks and fills their tables. Faces that no ray from a point
 // of the scene to a point of `lights` or of their convex hull can cross come last: the whole scene is on one side of
-// their plane, or all lights are in it.
-void list_faces(const TriangleSoup &soup, std::vector<Face> faces, const std::vector<Point3f> &lights,
+// their plane, or all lights are in it. Where `lights` is nothing, light comes from outside the scene, and there are
+// none.
+void list_faces(const TriangleSoup &soup, std::vector<Face> faces, const std::optional<std::vector<Point3f>> &lights,
                 FlatScene &scene);
 
 } // namespace opal

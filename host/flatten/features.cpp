@@ -61,7 +61,7 @@ public:
     Decision emitter(uint kind) const {
         if (!integrator.has(OPAL_ASKS_LIGHTS))
             return {false, "this integrator asks no emitter"};
-        if (!CAN_BE_MET(emitter_traits(kind)) && !samples_emitters(description.strategy))
+        if (!can_be_met(kind) && !samples_emitters(description.strategy))
             return {false, fmt::format("a BSDF sample never hits a {} light", emitter_name(kind))};
         const auto has = [&](const EmitterRecord &emitter) { return emitter.kind == kind; };
         return counted(std::size_t(std::count_if(scene.emitters.begin(), scene.emitters.end(), has)),

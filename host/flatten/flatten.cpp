@@ -1,9 +1,11 @@
 #include "flatten/camera.h"
 #include "flatten/distribution.h"
+#include "flatten/emitter_kinds.h"
 #include "flatten/emitters.h"
 #include "flatten/face_list.h"
 #include "flatten/features.h"
 #include "flatten/geometry.h"
+#include "flatten/store.h"
 
 #include <algorithm>
 #include <chrono>
@@ -76,13 +78,19 @@ void gather_bsdfs(const SceneDescription &description, FlatScene &scene) {
     scene.bsdfs.resize(scene.bsdfs.size() + longest / sizeof(uint));
 }
 
-// Point lights, the corners of emitting triangles, and those of the boxes of other primitives that emit: every shadow
-// ray ends at one of these points or in their convex hull.
-std::vector<Point3f> light_points(const SceneDescription &description, const Flattening &flattening,
-                                  const TriangleSoup &soup, const std::vector<Triangle> &triangles) {
+// Corners of the boxes of lights, of emitting triangles, and those of the boxes of other primitives that emit: every
+// shadow ray ends at one of these points or in their convex hull. Nothing: there are lights that are infinitely far.
+std::optional<std::vector<Point3f>> light_points(const SceneDescription &description, const Flattening &flattening,
+                                                 const TriangleSoup &soup, const std::vector<Triangle> &triangles) {
     std::vector<Point3f> points;
-    for (const PointLight &light : description.point_lights)
-        points.push_back(flattening(light.position));
+    for (const Light &light : description.lights) {
+        if (is_infinite(light.kind()) && !is_black(light))
+            return {};
+        Extent extent;
+        add_extent(light, extent);
+        for (unsigned corner = 0; corner < 8 && !extent.empty(); corner++)
+            points.push_back(flattening(extent.corner(corner)));
+    }
     for (size_t id = 0; id < triangles.size(); id++)
         if (description.meshes[triangles[id].mesh].radiance)
             for (uint vertex : soup.corners[id])
@@ -94,7 +102,8 @@ std::vector<Point3f> light_points(const SceneDescription &description, const Fla
     return points;
 }
 
-void build_acceleration(TriangleSoup &soup, const std::vector<Point3f> &lights, bool with_face_list, FlatScene &scene) {
+void build_acceleration(TriangleSoup &soup, const std::optional<std::vector<Point3f>> &lights, bool with_face_list,
+                        FlatScene &scene) {
     const auto start = std::chrono::steady_clock::now();
     const std::vector<uint> ids = choose_face_list(soup);
     // Triangles are paired at every width: pairing renumbers corners, and sampled points of lights depend on their
@@ -131,7 +140,6 @@ FlatScene flatten(const SceneDescription &description, int lanes) {
     build_acceleration(soup, light_points(description, flattening, soup, scene.triangles),
                        lanes >= FACE_LIST_LANES && description.strategy.specialise, scene);
     gather_emitters(description, flattening, soup, scene);
-    scene.settings.emitter_count = uint(scene.emitters.size());
     scene.features = find_features(description, scene, lanes);
     return scene;
 }

@@ -1,6 +1,7 @@
 #include "flatten/geometry.h"
 
 #include "base/log.h"
+#include "flatten/emitter_kinds.h"
 
 #include <fmt/format.h>
 
@@ -94,8 +95,8 @@ Extent extent_of(const SceneDescription &scene) {
     for (const Mesh &mesh : scene.meshes)
         if (const Extent part = extent_of(mesh); !part.empty())
             extent.add(part);
-    for (const PointLight &light : scene.point_lights)
-        extent.add(light.position);
+    for (const Light &light : scene.lights)
+        add_extent(light, extent);
     return extent;
 }
 

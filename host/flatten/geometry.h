@@ -8,7 +8,7 @@
 namespace opal {
 
 Extent extent_of(const Mesh &mesh);
-Extent extent_of(const SceneDescription &scene); // of all meshes and point lights, without the camera
+Extent extent_of(const SceneDescription &scene); // of all meshes and lights, without the camera
 
 // The map from world space to flattened units, (position - center) * scale. Distances grow by the factor `scale`, areas
 // by its square; directions stay. The scale is a power of two, so that nothing but the subtraction rounds in double.

@@ -126,9 +126,12 @@ Planes KernelProbe::bsdf_eval(unsigned id, Vec3 wi, std::span<const Vec3> points
                upload(input));
 }
 
+Planes KernelProbe::light_sample(std::span<const Vec3> from, const Planes &numbers) {
+    return run("light_draw", true, LIGHT_PLANES, numbers, upload(planes_of(from)), upload(numbers));
+}
+
 Planes KernelProbe::light_sample(Vec3 from, const Planes &numbers) {
-    return run("light_draw", true, LIGHT_PLANES, numbers, cl_float(from.x), cl_float(from.y), cl_float(from.z),
-               upload(numbers));
+    return light_sample(std::vector<Vec3>(numbers.count, from), numbers);
 }
 
 Planes KernelProbe::trace(const Planes &rays) { return run("trace", true, HIT_PLANES, rays, upload(rays)); }

@@ -54,8 +54,10 @@ public:
     // Of the BSDF of mesh `id`:
     Planes bsdf_sample(unsigned id, Vec3 wi, const Planes &numbers);      // BSDF_*: plane 0, 1 direction, 2 lobe
     Planes bsdf_eval(unsigned id, Vec3 wi, std::span<const Vec3> points); // EVAL_*
-    Planes light_sample(Vec3 from, const Planes &numbers);                // LIGHT_*, in flattened units
-    Planes trace(const Planes &rays);                                     // RAY_* -> HIT_*
+    // LIGHT_*, seen from a point for each sample, in flattened units:
+    Planes light_sample(std::span<const Vec3> from, const Planes &numbers);
+    Planes light_sample(Vec3 from, const Planes &numbers);
+    Planes trace(const Planes &rays); // RAY_* -> HIT_*
 
     const FlatScene &scene() const { return scene_; }
     const Device &device() const { return device_; }

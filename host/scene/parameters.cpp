@@ -43,11 +43,23 @@ std::span<const Parameter> bsdf_parameters(uint kind) {
     return tables[kind];
 }
 
+std::span<const Parameter> emitter_parameters(uint kind) {
+#define OPAL_VALUE_ROW(type, name, xml, initial, range, meaning)                                                       \
+    {ParameterType::type, #name, xml, initial, range, meaning, 0, 0},
+#define OPAL_NO_PARAMETERS(name, traits) {},
+#define OPAL_EMITTER_PARAMETERS(name, traits) {OPAL_EMITTER_##name(OPAL_VALUE_ROW)},
+    static const std::vector<Parameter> tables[] = {OPAL_MESH_EMITTERS(OPAL_NO_PARAMETERS)
+                                                        OPAL_SCENE_EMITTERS(OPAL_EMITTER_PARAMETERS)};
+    return tables[kind];
+}
+
 std::string text_of(const Parameter &parameter) {
     return parameter.type == ParameterType::FLAG ? "true or false" : text_of(parameter.range);
 }
 
 std::string text_of(const ValueRange &range) {
+    if (std::isinf(range.least) && std::isinf(range.most))
+        return "any";
     if (range.without_most)
         return fmt::format("above {:g} and below {:g}", range.least, range.most);
     if (!std::isinf(range.most))
@@ -58,11 +70,13 @@ std::string text_of(const ValueRange &range) {
 std::string text_of_initial(const Parameter &parameter) {
     if (parameter.type == ParameterType::FLAG)
         return parameter.initial != 0 ? "true" : "false";
+    if (std::isnan(parameter.initial))
+        return "required";
     return fmt::format("{:g}", parameter.initial);
 }
 
 const char *xml_tag(ParameterType type) {
-    static const char *const tags[] = {"color", "float", "boolean", "bsdf"};
+    static const char *const tags[] = {"color", "float", "boolean", "bsdf", "point", "vector"};
     return tags[static_cast<size_t>(type)];
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bsdfs/list.h"
+#include "emitters/list.h"
 
 #include <algorithm>
 #include <array>
@@ -29,25 +30,28 @@ constexpr ValueRange ABOVE(double least) { return {least, INFINITY, true}; }
 constexpr ValueRange BETWEEN(double least, double most) { return {least, most}; }
 constexpr ValueRange INSIDE(double least, double most) { return {least, most, true, true}; }
 
-enum class ParameterType { COLOR, NUMBER, FLAG, BSDF };
+constexpr double REQUIRED = NAN; // in place of a default
+
+enum class ParameterType { COLOR, NUMBER, FLAG, BSDF, POINT, VECTOR };
 
 struct Parameter {
     ParameterType type;
     std::string name;     // as a record's member: "int_ior"
     std::string xml_name; // "intIOR"
-    double initial;       // of each channel of a colour; 0 or 1 of a flag
+    double initial;       // of each channel or coordinate; 0 or 1 of a flag; NaN: REQUIRED
     ValueRange range;
     std::string meaning;
-    size_t word;         // of the record: the parameter's first one ...
+    size_t word;         // of a BSDF's record: the parameter's first one ...
     size_t texture_word; // ... and that of its texture; 0: it cannot have one
 };
 
-std::span<const Parameter> bsdf_parameters(uint kind); // kind: BSDF_*
+std::span<const Parameter> bsdf_parameters(uint kind);    // kind: BSDF_*
+std::span<const Parameter> emitter_parameters(uint kind); // kind: EMITTER_*; none of emitters of meshes
 
 std::string text_of(const ValueRange &range);            // what a number may be: "0 or more", "above 0"
 std::string text_of(const Parameter &parameter);         // what it may be: "above 0", "true or false"
 std::string text_of_initial(const Parameter &parameter); // "0.5", "false"
-const char *xml_tag(ParameterType type);                 // "color", "float", "boolean"
+const char *xml_tag(ParameterType type);                 // "color", "float", "boolean", "point"
 
 // A record as words, and back. `at`: index of its first word.
 template <class Record> using WordsOf = std::array<uint, sizeof(Record) / sizeof(uint)>;

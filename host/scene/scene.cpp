@@ -31,16 +31,14 @@ unsigned Bsdf::traits() const {
 }
 
 const char *emitter_name(unsigned kind) {
-#define OPAL_NAME(name, traits) #name,
-    static const char *const names[] = {OPAL_EMITTERS(OPAL_NAME)};
-#undef OPAL_NAME
+#define OPAL_EMITTER_NAME(name, traits) #name,
+    static const char *const names[] = {OPAL_EMITTERS(OPAL_EMITTER_NAME)};
     return names[kind];
 }
 
-int emitter_traits(unsigned kind) {
-#define OPAL_TRAITS(name, traits) traits,
-    static const int all[] = {OPAL_EMITTERS(OPAL_TRAITS)};
-#undef OPAL_TRAITS
+unsigned emitter_traits(unsigned kind) {
+#define OPAL_EMITTER_TRAITS(name, traits) traits,
+    static const unsigned all[] = {OPAL_EMITTERS(OPAL_EMITTER_TRAITS)};
     return all[kind];
 }
 
@@ -65,6 +63,13 @@ std::string camera_text(const Camera &camera) {
 #undef OPAL_NUMBER_TEXT
     }
     return text;
+}
+
+const Light *light_missed_by_bsdfs(const SceneDescription &scene) {
+    for (const Light &light : scene.lights)
+        if (!can_be_met(light.kind()))
+            return &light;
+    return nullptr;
 }
 
 } // namespace opal

@@ -4,8 +4,9 @@
 #include "base/color.h"
 #include "base/math.h"
 #include "cameras/list.h"
-#include "emitters/list.h"
+#include "scene/emitters.h"
 #include "scene/parameters.h"
+#include "scene/place.h"
 #include "scene/shapes.h"
 #include "scene/strategy.h"
 #include "shared/types.h"
@@ -17,19 +18,10 @@
 
 namespace opal {
 
-// A place in a file. Line and column count from 1; 0: unknown.
-struct SourcePlace {
-    std::string file;
-    int line = 0, column = 0;
-    std::string text() const; // "file:line:col"
-};
-
-// Names of kinds, as the XML gives them: "diffuse", "mesh".
-const char *bsdf_name(unsigned kind);    // kind: BSDF_*
-unsigned bsdf_traits(unsigned kind);     // OPAL_SMOOTH and so on, as bits; 0 of a kind that leads to others
-const char *emitter_name(unsigned kind); // kind: EMITTER_*
-int emitter_traits(unsigned kind);       // SURFACE_LIGHT | ...
-const char *camera_name(unsigned kind);  // kind: CAMERA_*
+// Names of kinds, as the XML gives them: "diffuse".
+const char *bsdf_name(unsigned kind);   // kind: BSDF_*
+unsigned bsdf_traits(unsigned kind);    // OPAL_SMOOTH and so on, as bits; 0 of a kind that leads to others
+const char *camera_name(unsigned kind); // kind: CAMERA_*
 
 // A material: the record of its kind, ready for the device but for the places of the BSDFs that it leads to. By default
 // a grey diffuse one.
@@ -52,12 +44,6 @@ struct Mesh {
     Shape shape;
     Bsdf bsdf;
     std::optional<Color> radiance; // emitted by its area emitter, W / (m^2 sr)
-    SourcePlace place;
-};
-
-struct PointLight {
-    Vec3 position;
-    Color power; // W; intensity = power / (4 pi)
     SourcePlace place;
 };
 
@@ -95,7 +81,7 @@ struct SceneDescription {
     std::filesystem::path file;
     Camera camera;
     std::vector<Mesh> meshes;
-    std::vector<PointLight> point_lights;
+    std::vector<Light> lights;                // beside the meshes that emit
     std::string integrator_type = "path_mis"; // as written, e.g. path_tracer_recursive; path_mis where there is none
     bool university_dialect = false;          // the integrator's name is one of the 2022 course
     Strategy strategy;
@@ -103,5 +89,8 @@ struct SceneDescription {
     SimpleLight simple_light;
     unsigned spp = 1;
 };
+
+// The first light that no BSDF sample can hit, or null.
+const Light *light_missed_by_bsdfs(const SceneDescription &scene);
 
 } // namespace opal

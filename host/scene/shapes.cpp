@@ -18,6 +18,8 @@ void Extent::add(const Extent &other) {
 
 double Extent::longest_side() const { return empty() ? 0 : std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z}); }
 
+double Extent::radius() const { return empty() ? 0 : length(hi - lo) / 2; }
+
 Extent TriangleMesh::extent() const {
     Extent extent;
     for (const auto &triangle : triangles)

@@ -19,7 +19,9 @@ struct Extent {
     void add(const Extent &other);
     bool empty() const { return lo.x > hi.x; }
     Vec3 middle() const { return lo * 0.5 + hi * 0.5; }
+    Vec3 corner(unsigned i) const { return {i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z}; } // of 8
     double longest_side() const; // 0 if empty
+    double radius() const;       // of the sphere through the corners; 0 if empty
 };
 
 struct TriangleMesh {

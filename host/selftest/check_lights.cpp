@@ -1,17 +1,125 @@
-// Points on lights against the density that hitting them is weighed with, for each way to choose emitter and triangle.
+// Lights as light sampling sees them: directions against the density that hitting the light is weighed with, delta
+// lights against what they must be, and the power by which lights are chosen.
 #include "densities/targets.h"
+#include "flatten/emitter_kinds.h"
 #include "selftest/checks.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <numbers>
 
 namespace opal {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr size_t directions = 1 << 14;
+
+// Directions that are even over the sphere (Gonzalez 2010, "Measurement of Areas on a Sphere Using Fibonacci and
+// Latitude-Longitude Lattices").
+std::vector<Vec3> even_directions() {
+    std::vector<Vec3> all;
+    for (size_t i = 0; i < directions; i++)
+        all.push_back(stats::spherical_direction(1 - (2 * double(i) + 1) / directions,
+                                                 2 * pi * std::fmod(double(i) * std::numbers::phi, 1)));
+    return all;
+}
+
+double radiance_at(const Planes &drawn, size_t i) {
+    const double value =
+        luminance({drawn.at(LIGHT_RADIANCE_R, i), drawn.at(LIGHT_RADIANCE_G, i), drawn.at(LIGHT_RADIANCE_B, i)});
+    return drawn.at(LIGHT_ACTIVE, i) ? value : 0;
+}
+
+// Whether sample i could be one of a delta light: a unit direction, light that is finite and not negative, density 1.
+bool is_delta_sample(const Planes &drawn, size_t i) {
+    bool good = std::abs(length(drawn.vec3(LIGHT_D_X, i)) - 1) < 1e-5 && drawn.at(LIGHT_DENSITY, i) == 1;
+    for (size_t channel = 0; channel < 3; channel++) {
+        const double value = drawn.at(LIGHT_RADIANCE_R + channel, i);
+        good = good && value >= 0 && std::isfinite(value);
+    }
+    return good;
+}
+
+bool is_near(double a, double b) { return std::abs(a - b) <= 1e-4 * std::abs(b); }
+
+// A light that is infinitely far: one direction and irradiance everywhere. Power over pi (the bounding circle of radius
+// 1).
+Findings distant_findings(KernelProbe &probe, const Light &light, const Planes &numbers, const std::string &subject) {
+    const Planes drawn = probe.light_sample(even_directions(), numbers);
+    double wrong = 0;
+    for (size_t i = 0; i < drawn.count; i++)
+        wrong += !is_delta_sample(drawn, i) || !is_near(radiance_at(drawn, i), radiance_at(drawn, 0)) ||
+                 length(drawn.vec3(LIGHT_D_X, i) - drawn.vec3(LIGHT_D_X, 0)) > 1e-5;
+    return {
+        none_wrong("lights: samples of delta lights, wrong", wrong, subject),
+        at_most("lights: power, off by", std::abs(pi * radiance_at(drawn, 0) / power_of(light, 1) - 1), 1e-2, subject)};
+}
+
+// A light at a point: all directions lead there, the irradiance falls by the distance's square, and the intensity over
+// all directions is the power.
+Findings point_like_findings(KernelProbe &probe, const Light &light, const Planes &numbers,
+                             const std::string &subject) {
+    const Planes first = probe.light_sample(Vec3{0.9, -0.8, 0.7}, numbers);
+    const Vec3 position = Vec3{0.9, -0.8, 0.7} + first.vec3(LIGHT_D_X, 0) * first.at(LIGHT_DISTANCE, 0);
+    std::vector<Vec3> near, far;
+    for (Vec3 d : even_directions()) {
+        near.push_back(position + d * 0.5);
+        far.push_back(position + d);
+    }
+    const Planes from_near = probe.light_sample(near, numbers), from_far = probe.light_sample(far, numbers);
+    double wrong = 0, power = 0;
+    for (size_t i = 0; i < directions; i++) {
+        const Vec3 met = near[i] + from_near.vec3(LIGHT_D_X, i) * from_near.at(LIGHT_DISTANCE, i);
+        wrong += !is_delta_sample(from_near, i) || !is_delta_sample(from_far, i) || length(met - position) > 1e-5 ||
+                 !is_near(radiance_at(from_near, i) / 4, radiance_at(from_far, i));
+        power += radiance_at(from_far, i) * 4 * pi / directions;
+    }
+    const double scale = probe.scene().scale;
+    return {
+        none_wrong("lights: samples of delta lights, wrong", wrong, subject),
+        at_most("lights: power, off by", std::abs(power / (power_of(light, 1) * scale * scale) - 1), 1e-2, subject)};
+}
+
+// The radiance over all directions, times the bounding circle of radius 1.
+Finding environment_power(KernelProbe &probe, const Light &light, const Planes &numbers, const std::string &subject) {
+    const Planes drawn = probe.light_sample(Vec3{}, numbers);
+    double sum = 0;
+    for (size_t i = 0; i < drawn.count; i++)
+        sum += radiance_at(drawn, i) / drawn.at(LIGHT_DENSITY, i);
+    return at_most("lights: power, off by", std::abs(sum / double(drawn.count) * pi / power_of(light, 1) - 1), 1e-2,
+                   subject);
+}
+
+} // namespace
 
 Findings light_findings(KernelProbe &probe, const Sampled &lights, const std::string &subject, const Effort &effort) {
     Sampled sampled = lights;
     sampled.relative_error = effort.quadrature_error;
     const DensityCheck check = check_density(probe, sampled, effort.nu, effort.nv, effort.samples, effort.seed);
-    return {p_value("lights: points against density, smallest p", check.test.result.p_value, subject),
+    return {p_value("lights: directions against density, smallest p", check.test.result.p_value, subject),
             at_most("lights: integral of the pdf, off by", std::abs(check.test.mass.value - 1), 1e-3, subject)};
+}
+
+Findings scene_emitter_findings(KernelProbe &probe, const Light &light, const std::string &subject,
+                                const Effort &effort) {
+    NumberOptions which;
+    which.seed = effort.seed;
+    const Planes numbers = probe.numbers(directions, which);
+    if (!can_be_met(light.kind()))
+        return is_infinite(light.kind()) ? distant_findings(probe, light, numbers, subject)
+                                         : point_like_findings(probe, light, numbers, subject);
+    Findings findings = light_findings(probe, sampled_lights(probe), subject, effort);
+    findings.push_back(environment_power(probe, light, numbers, subject));
+    return findings;
+}
+
+FlatScene scene_of_light(const Light &light, int lanes) {
+    SceneDescription scene;
+    scene.lights = {light};
+    scene.strategy.specialise = false;
+    return flatten(scene, lanes);
 }
 
 Findings run_lights(const Device &device, const SelftestOptions &options) {
@@ -26,6 +134,13 @@ Findings run_lights(const Device &device, const SelftestOptions &options) {
             const Target target = open_target(name, {}, axes, device, options.build, *options.sources);
             effort.seed++;
             append(findings, light_findings(*target.probe, target.sampled, target.description, effort));
+        }
+    for (uint kind = 0; kind < EMITTER_COUNT; kind++)
+        if (!(emitter_traits(kind) & OPAL_SURFACE)) {
+            const Light light = light_of_parameters(kind, {});
+            KernelProbe probe(device, scene_of_light(light, options.build.lanes), options.build, *options.sources);
+            effort.seed++;
+            append(findings, scene_emitter_findings(probe, light, emitter_name(kind), effort));
         }
     return summary_of(findings);
 }

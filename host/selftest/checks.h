@@ -48,7 +48,13 @@ Findings material_findings(KernelProbe &probe, const std::vector<Material> &mate
 // incident ray, indices of refraction on its side and beyond.
 double fresnel_reflectance(double cosine, double near, double far);
 
-// Points on lights against the density that a hit on them is weighed with, and the density's integral.
+// Directions to lights against the density that a hit on them is weighed with, and the density's integral.
 Findings light_findings(KernelProbe &probe, const Sampled &lights, const std::string &subject, const Effort &effort);
+
+// An emitter of scenes, alone in the probe's scene: an environment's directions as above; of delta lights, that their
+// samples lie in one direction and fall off as they should; the power by which it is chosen.
+Findings scene_emitter_findings(KernelProbe &probe, const Light &light, const std::string &subject,
+                                const Effort &effort);
+FlatScene scene_of_light(const Light &light, int lanes);
 
 } // namespace opal

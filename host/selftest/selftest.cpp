@@ -7,7 +7,7 @@ const std::vector<CheckGroup> &check_groups() {
         {"basics", "layout of records, random numbers, math functions", run_basics},
         {"warps", "warps against their densities", run_warps},
         {"bsdfs", "BSDFs against their densities and values", run_bsdfs},
-        {"lights", "points on lights against their densities", run_lights},
+        {"lights", "directions to lights against their densities", run_lights},
         {"rays", "closest and any hit against brute force, watertightness", run_rays},
         {"images", "the furnace, and strategies against each other", run_images},
     };

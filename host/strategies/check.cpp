@@ -11,8 +11,10 @@ namespace opal {
 
 namespace {
 
-bool has_area_light(const SceneDescription &scene) {
-    return std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh &mesh) { return mesh.radiance; });
+// A light that BSDF samples may hit.
+bool has_hit_light(const SceneDescription &scene) {
+    return std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh &mesh) { return mesh.radiance; }) ||
+           std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light &l) { return can_be_met(l.kind()); });
 }
 
 [[noreturn]] void refuse(const std::string &combination, const std::string &reason) {
@@ -53,11 +55,14 @@ void check_lighting(const SceneDescription &scene) {
     if (!integrator.reads(AXIS_lighting) && strategy[AXIS_lighting] != CHOICE_lighting_emitter)
         refuse(fmt::format("integrator {} without lighting emitter", integrator.name),
                "it finds light by emitter sampling alone");
-    if (samples_emitters(strategy) || scene.point_lights.empty())
+    const Light *missed = light_missed_by_bsdfs(scene);
+    if (samples_emitters(strategy) || !missed)
         return;
-    if (!has_area_light(scene))
-        refuse("lighting bsdf with point lights only", "no BSDF sample can hit a point; available: emitter, mis");
-    warn(scene.point_lights[0].place.text() + ": lighting bsdf cannot hit point lights: their light is missing");
+    const std::string kind = emitter_name(missed->kind());
+    if (!has_hit_light(scene))
+        refuse(fmt::format("lighting bsdf with {} lights only", kind),
+               fmt::format("no BSDF sample can hit a {} light; available: emitter, mis", kind));
+    warn(fmt::format("{}: lighting bsdf cannot hit {} lights: their light is missing", missed->place.text(), kind));
 }
 
 } // namespace

@@ -44,7 +44,7 @@ std::map<std::string, std::string> overrides_of(const std::string &text) {
 class Combinations {
 public:
     explicit Combinations(const SceneDescription &scene) : scene_(scene), integrator_(integrator_of(scene.strategy)) {
-        size_t emitters = scene.point_lights.size();
+        size_t emitters = scene.lights.size();
         for (Mesh &mesh : scene_.meshes) {
             const auto *triangles = std::get_if<TriangleMesh>(&mesh.shape);
             emitters += mesh.radiance.has_value();
@@ -95,7 +95,7 @@ private:
 
     bool is_unbiased_and_ends(int axis, int choice) const {
         if (axis == AXIS_lighting && choice == CHOICE_lighting_bsdf)
-            return scene_.point_lights.empty();
+            return !light_missed_by_bsdfs(scene_);
         if (axis == AXIS_rr && choice == CHOICE_rr_off)
             return scene_.strategy.max_depth != no_limit;
         return true;

@@ -59,10 +59,10 @@ public:
                 "the presets course and all compare ways to find light; integrator {} has none: name strategies, "
                 "e.g. --strategies hemisphere=uniform hemisphere=cosine, or take --integrator path",
                 axes()[AXIS_integrator].choices[size_t(scene_.strategy[AXIS_integrator])].name));
-        const bool misses_point_lights = !scene_.point_lights.empty();
+        const bool misses_lights = light_missed_by_bsdfs(scene_) != nullptr;
         for (const PresetRow &row : preset_rows)
             if (is_for(row, integrator) && (every || !row.only_all) &&
-                !(misses_point_lights && row.name.starts_with("lighting=bsdf")))
+                !(misses_lights && row.name.starts_with("lighting=bsdf")))
                 add(row.name, row.label);
     }
 

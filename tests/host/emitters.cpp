@@ -1,5 +1,6 @@
 // The tables of lights.
 #include "flatten/geometry.h"
+#include "support/error_of.h"
 #include "support/plain_scenes.h"
 
 #include <catch2/catch.hpp>
@@ -29,18 +30,18 @@ TEST_CASE("a light of slivers down to the smallest triangle", "[emitters]") {
     CHECK(scene.triangles.size() > 1000);
     CHECK(scene.triangles.size() < 2000);
     REQUIRE(scene.light_triangles.size() == scene.triangles.size());
-    double sum = 0, area = 0;
+    double all = 0, sum = 0;
+    for (const LightTriangle &row : scene.light_triangles)
+        all += area_of(scene, row.slot);
     for (const LightTriangle &row : scene.light_triangles) {
         const double own = area_of(scene, row.slot), probability = own / row.inverse_pdf;
         CHECK(own > 0);
         // As the area says, but for a random number's 2^-24 in the table's rows, of which there are so many.
-        CHECK(probability == Approx(own / scene.emitters[0].area).epsilon(1e-3).margin(0x1p-24));
+        CHECK(probability == Approx(own / all).epsilon(1e-3).margin(0x1p-24));
         CHECK((row.accept >= 0 && row.accept <= 1 && row.other < scene.emitters[0].count));
         sum += probability;
-        area += own;
     }
     CHECK(sum == Approx(1).epsilon(1e-6));
-    CHECK(area == Approx(scene.emitters[0].area).epsilon(1e-6));
 }
 
 TEST_CASE("emitters of each kind, in the flattened units", "[emitters]") {
@@ -51,7 +52,7 @@ TEST_CASE("emitters of each kind, in the flattened units", "[emitters]") {
         light(Parallelogram{{0, 0, 2}, {2, 0, 0}, {0, 3, 0}}, bright),                                // area 6
         light(one_triangle, {0, 0, 0}),
     });
-    description.point_lights = {{{4, 0, 0}, power, {}}, {{0, 0, 0}, {0, 0, 0}, {}}};
+    description.lights = {{emitter_point{{4, 0, 0}, power}, {}}, {emitter_point{{0, 0, 0}, {0, 0, 0}}, {}}};
 
     SECTION("by power and by area") {
         description.strategy[AXIS_emitter_choice] = CHOICE_emitter_choice_power;
@@ -66,22 +67,23 @@ TEST_CASE("emitters of each kind, in the flattened units", "[emitters]") {
         const EmitterRecord &mesh = scene.emitters[0], &quad = scene.emitters[1], &point = scene.emitters[2];
 
         CHECK((mesh.kind == EMITTER_mesh && mesh.first == 0 && mesh.count == 2));
-        CHECK(mesh.area == Approx(10. / 64));
-        CHECK((mesh.radiance[0] == 1 && mesh.radiance[2] == 3));
-        CHECK((scene.triangles[mesh.first_triangle].mesh == 1 && scene.triangles[mesh.first_triangle + 1].mesh == 1));
+        CHECK((mesh.u.of_mesh.radiance[0] == 1 && mesh.u.of_mesh.radiance[2] == 3));
+        const uint first = mesh.u.of_mesh.first_triangle;
+        CHECK((scene.triangles[first].mesh == 1 && scene.triangles[first + 1].mesh == 1));
         CHECK(area_of(scene, scene.light_triangles[0].slot) == Approx(8. / 64)); // each row leads to its own triangle
         CHECK(area_of(scene, scene.light_triangles[1].slot) == Approx(2. / 64));
         for (const LightTriangle &row : scene.light_triangles)
             CHECK(row.inverse_pdf == Approx(10. / 64));
 
-        CHECK((quad.kind == EMITTER_parallelogram && quad.u[0] == 0.25f && quad.v[1] == 0.375f &&
-               quad.origin[2] == float((2 - center_z) / 8)));
-        CHECK(quad.area == Approx(6. / 64));
+        const emitter_parallelogram_record &own = quad.u.of_parallelogram;
+        CHECK((quad.kind == EMITTER_parallelogram && own.u[0] == 0.25f && own.v[1] == 0.375f &&
+               own.origin[2] == float((2 - center_z) / 8)));
+        CHECK(own.area == Approx(6. / 64));
 
         CHECK(point.kind == EMITTER_point);
-        CHECK(point.origin[0] == 0.5f);
+        CHECK(point.u.of_point.position[0] == 0.5f);
         // Intensity over squared distance is the same in both units.
-        CHECK(point.radiance[0] / (0.5 * 0.5) == Approx(100 / (4 * pi) / (4. * 4.)));
+        CHECK(point.u.of_point.intensity[0] / (0.5 * 0.5) == Approx(100 / (4 * pi) / (4. * 4.)));
 
         const double powers[] = {pi * luminance(bright) * 10, pi * luminance(bright) * 6, luminance(power)};
         const double all = powers[0] + powers[1] + powers[2];
@@ -102,6 +104,23 @@ TEST_CASE("emitters of each kind, in the flattened units", "[emitters]") {
             CHECK(emitter.probability == Approx(1. / 3).epsilon(1e-6));
         for (const LightTriangle &row : scene.light_triangles)
             CHECK(area_of(scene, row.slot) / row.inverse_pdf == Approx(0.5));
-        CHECK(scene.emitters[0].area == Approx(10. / 64));
     }
+}
+
+TEST_CASE("an environment sheds its power on the scene's bounding sphere, and there is one", "[emitters]") {
+    const Color bright{1, 2, 3}, power{100, 50, 20};
+    SceneDescription description = scene_of({diffuse(Parallelogram{{-8, -8, 0}, {16, 0, 0}, {0, 16, 0}})});
+    CHECK(flatten(description, 8).settings.environment == OPAL_NONE);
+    description.lights = {
+        {emitter_constant{{0, 0, 0}}, {}}, {emitter_point{{4, 0, 0}, power}, {}}, {emitter_constant{bright}, {}}};
+    description.strategy[AXIS_emitter_choice] = CHOICE_emitter_choice_power;
+    const FlatScene scene = flatten(description, 8);
+    REQUIRE(scene.emitters.size() == 2);
+    CHECK(scene.settings.environment == 1);
+    CHECK((scene.emitters[1].kind == EMITTER_constant && scene.emitters[1].u.of_constant.radiance[2] == 3));
+    const double sky = pi * luminance(bright) * 4 * pi * 128; // radius 8 sqrt(2)
+    CHECK(scene.emitters[1].probability == Approx(sky / (sky + luminance(power))));
+
+    description.lights.push_back({emitter_constant{bright}, {"a.xml", 7, 1}});
+    CHECK_THAT(test::error_of([&] { flatten(description, 8); }), Catch::StartsWith("a.xml:7:1: a second environment"));
 }

@@ -56,7 +56,7 @@ TEST_CASE("a BSDF comes with those that it leads to, each record once", "[featur
 TEST_CASE("features are what the scene and the strategy ask for, each with a reason", "[features]") {
     SceneDescription description = scene_of({diffuse(one_triangle), light(one_triangle, {1, 1, 1})});
     description.meshes[0].bsdf = bsdf_mirror_record{};
-    description.point_lights = {{{1, 1, 1}, {1, 1, 1}, {}}};
+    description.lights = {{emitter_point{{1, 1, 1}, {1, 1, 1}}, {}}};
     const auto on = [](const SceneDescription &scene) {
         std::set<std::string> names;
         const Features features = flatten(scene, 8).features;

@@ -45,7 +45,9 @@ TEST_CASE("what no triangle uses does not stretch the scene; point lights do", "
     mesh.positions.push_back({1e9, 0, 0});
     SceneDescription scene = scene_of({diffuse(mesh)});
     CHECK(find_flattening(scene).scale == 2);
-    scene.point_lights.push_back({{0, 0, 7}, {1, 1, 1}, {}});
+    scene.lights.push_back({emitter_constant{}, {}});
+    CHECK(find_flattening(scene).scale == 2);
+    scene.lights.push_back({emitter_point{{0, 0, 7}, {1, 1, 1}}, {}});
     CHECK(find_flattening(scene).scale == 0.25);
 }
 
@@ -305,8 +307,14 @@ TEST_CASE("the largest triangles are listed beside the tree, each triangle is in
 
     // Light below the floor makes it one that may block.
     SceneDescription lit = description;
-    lit.point_lights.push_back({{0, 0, -1}, {1, 1, 1}, {}});
+    lit.lights.push_back({emitter_point{{0, 0, -1}, {1, 1, 1}}, {}});
     CHECK(flatten(lit, 8).settings.face_list_to_light.faces == 1);
+    // Light from all around makes all faces such, unless it is black.
+    SceneDescription sky = description;
+    sky.lights.push_back({emitter_constant{{0, 0, 0}}, {}});
+    CHECK(flatten(sky, 8).settings.face_list_to_light.faces == 0);
+    sky.lights.push_back({emitter_constant{}, {}});
+    CHECK(flatten(sky, 8).settings.face_list_to_light.faces == flatten(sky, 8).faces.size());
 
     // A lamp in the middle of the scene does not block its own light, nor do two in one plane; one above the other may,
     // and so may a mirror there.

@@ -277,10 +277,17 @@ TEST_CASE_METHOD(LoadFixture, "emitters stand where they belong", "[load]") {
     SceneDescription scene = load(
         camera + light +
         "\n<emitter type='point'><point name='position' value='1 2 3'/><color name='power' value='4 5 6'/></emitter>");
-    REQUIRE(scene.point_lights.size() == 1);
-    CHECK(scene.point_lights[0].position.y == 2);
-    CHECK(scene.point_lights[0].power == Color{4, 5, 6});
-    CHECK(scene.point_lights[0].place.text() == file() + ":3:1");
+    REQUIRE(scene.lights.size() == 1);
+    const auto point = std::get<emitter_point>(scene.lights[0].parameters);
+    CHECK(point.position.y == 2);
+    CHECK(point.power == Color{4, 5, 6});
+    CHECK(scene.lights[0].place.text() == file() + ":3:1");
+    const auto sky = load(camera + light + "<emitter type='constant'/>").lights.at(0);
+    CHECK(std::get<emitter_constant>(sky.parameters).radiance == Color{1, 1, 1});
+    CHECK(error_in(camera + "\n<emitter type='point'><color name='power' value='1 1 1'/></emitter>") ==
+          ":3:1: <emitter> lacks its property 'position'");
+    CHECK(error_in(camera + "<emitter type='constant'>\n<color name='radiance' value='1 -1 1'/></emitter>") ==
+          ":3:1: property 'radiance': must be 0 or more: radiance, W / (m^2 sr)");
     CHECK(error_in(camera + "\n<emitter type='area'><color name='radiance' value='1 1 1'/></emitter>") ==
           ":3:1: emitter 'area' must stand in a <mesh>, not in a <scene>");
     CHECK_THAT(error_in(camera + "<mesh type='parallelogram'>\n<emitter type='point'/></mesh>"),
@@ -288,7 +295,8 @@ TEST_CASE_METHOD(LoadFixture, "emitters stand where they belong", "[load]") {
     CHECK(error_in(camera + "<mesh type='parallelogram'>\n<emitter type='area'/></mesh>") ==
           ":3:1: <emitter> lacks its property 'radiance'");
     CHECK_THAT(error_in(camera + "<mesh type='parallelogram'>\n<emitter type='sky'/></mesh>"),
-               Catch::StartsWith(":3:1: unknown emitter type 'sky'; available: area, parallelogram_emitter, point"));
+               Catch::StartsWith(":3:1: unknown emitter type 'sky'; available: area, parallelogram_emitter, point, "
+                                 "constant"));
 }
 
 TEST_CASE_METHOD(LoadFixture, "parallelograms take their transform, and need an area", "[load]") {

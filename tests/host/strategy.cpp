@@ -208,15 +208,17 @@ TEST_CASE("nonsense is refused with its reason", "[strategy]") {
 
 TEST_CASE("point lights and BSDF sampling: refused alone, warned of beside area lights", "[strategy]") {
     SceneDescription scene;
-    scene.point_lights.push_back({{0, 0, 0}, {1, 1, 1}, {"a.xml", 3, 5}});
+    scene.lights.push_back({emitter_point{{0, 0, 0}, {1, 1, 1}}, {"a.xml", 3, 5}});
     CHECK_THAT(check_error(scene, {{"integrator", "path_mats"}}),
                Catch::StartsWith("lighting bsdf with point lights only"));
     CHECK(check_error(scene, {{"integrator", "path_mis"}}).empty());
     CHECK(check_error(scene, {{"integrator", "normals"}}).empty());
     SceneDescription both = lit_scene();
-    both.point_lights = scene.point_lights;
+    both.lights = scene.lights;
     CHECK(check_error(both, {{"integrator", "path_mats"}}).empty());
     CHECK_THAT(warnings().back(), Catch::StartsWith("a.xml:3:5: lighting bsdf cannot hit point lights"));
+    scene.lights = {{emitter_constant{}, {}}}; // rays that leave the scene hit it
+    CHECK(check_error(scene, {{"integrator", "path_mats"}}).empty());
 }
 
 TEST_CASE("everything that means something passes", "[strategy]") {

@@ -141,7 +141,7 @@ TEST_CASE("Each integrator varies what it asks", "[verify]") {
     // lighting bsdf (3 hemispheres), emitter, mis (3 heuristics x 3 hemispheres), each with 3 samplers
     CHECK(sensible_strategies(load(folder, "direct_lighting"), 100).size() == 3 * (3 + 1 + 9));
     SceneDescription with_point = load(folder, "direct_lighting");
-    with_point.point_lights.push_back({{0, 0, 0}, {1, 1, 1}, {}});
+    with_point.lights.push_back({emitter_point{{0, 0, 0}, {1, 1, 1}}, {}});
     for (const NamedStrategy &s : sensible_strategies(with_point, 100))
         CHECK(s.strategy[AXIS_lighting] != CHOICE_lighting_bsdf);
 }

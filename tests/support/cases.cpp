@@ -43,8 +43,12 @@ std::vector<LightCase> emitter_cases(const std::filesystem::path &folder) {
     std::vector<LightCase> cases;
     for (const std::filesystem::path &file : xml_files(folder)) {
         const XmlDocument document(file);
+        if (document.root().tag() == "emitter") {
+            cases.push_back({file.stem().string(), parse_scene_emitter(document.root(), {folder})});
+            continue;
+        }
         if (document.root().tag() != "mesh")
-            document.root().fail("a case of this folder is a <mesh> with an area emitter");
+            document.root().fail("a case of this folder is a <mesh> with an area emitter, or an <emitter> of a scene");
         const Mesh mesh = parse_mesh(document.root(), {folder});
         if (!mesh.radiance)
             document.root().fail("this mesh has no emitter");

@@ -12,10 +12,10 @@ std::vector<Material> bsdf_cases(const std::filesystem::path &folder = OPAL_SOUR
 
 struct LightCase {
     std::string name;
-    Mesh mesh;
+    std::variant<Mesh, Light> emitter;
 };
-// The <mesh> with an area emitter of each file, by name. Error: a file that is not one, or a light outside of the unit
-// square of the plane z = 0, where its samples are counted.
+// The <mesh> with an area emitter, or the <emitter> of a scene, of each file, by name. Error: a file that is neither,
+// or a mesh outside of the unit square of the plane z = 0, where its samples are counted.
 std::vector<LightCase> emitter_cases(const std::filesystem::path &folder = OPAL_SOURCE_DIR "/tests/cases/emitters");
 
 } // namespace opal::test

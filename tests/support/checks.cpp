@@ -144,7 +144,7 @@ Findings check_point_light(const Sources &sources, unsigned seed) {
     }
     // energy / (4 pi^2) cos / d^2: the point light's radiance for an albedo of 1.
     SceneDescription simple = point_light();
-    simple.simple_light = {simple.point_lights[0].position, {80, 0, 0}};
+    simple.simple_light = {std::get<emitter_point>(simple.lights[0].parameters).position, {80, 0, 0}};
     const Film film = render_general(simple, {{"integrator", "simple"}}, 4, seed, sources);
     findings.push_back(mean_is("integrator simple", film, point_light_truth(), 0));
     return findings;

@@ -46,7 +46,7 @@ SceneDescription lamps(const std::vector<double> &others) {
     SceneDescription scene = point_light();
     scene.camera.perspective.fov = 1e-5; // all samples see one point, however few choose the lamp
     for (double power : others)
-        scene.point_lights.push_back({{0.1, -1, 0.2}, {power, power, power}, {}});
+        scene.lights.push_back({emitter_point{{0.1, -1, 0.2}, {power, power, power}}, {}});
     return scene;
 }
 
@@ -96,7 +96,7 @@ Findings check_counted(const Sources &sources, unsigned) {
     // A draw from an alias table takes two numbers, for row and accept. Their pairs come up exactly as often as they
     // should where both shares are even, as here.
     SceneDescription dim = lamps({1e8});
-    dim.point_lights[0].power = {100, 100, 100};
+    std::get<emitter_point>(dim.lights[0].parameters).power = {100, 100, 100};
     findings.push_back(counted("a lamp of 1e-6 of another's power", dim, by_power, lamp, sources));
 
     for (float index : {1.001f, 1.01f, 1.33f})

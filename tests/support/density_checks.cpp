@@ -57,13 +57,13 @@ stats::Sample albedo_of(KernelProbe &probe, unsigned id, Vec3 wi, unsigned seed)
     return moments.sample();
 }
 
-// The lights of all cases in one scene, each in a column of the unit square.
-SceneDescription side_by_side(const std::vector<LightCase> &cases) {
+// The meshes in one scene, each in a column of the unit square.
+SceneDescription side_by_side(const std::vector<Mesh> &meshes) {
     SceneDescription scene = scene_of({});
-    const double width = 1 / double(cases.size());
-    for (size_t i = 0; i < cases.size(); i++) {
+    const double width = 1 / double(meshes.size());
+    for (size_t i = 0; i < meshes.size(); i++) {
         const Transform to_column = Transform::translate({double(i) * width, 0, 0}) * Transform::scale({width, 1, 1});
-        const SceneDescription moved = extremes::moved(scene_of({cases[i].mesh}), to_column);
+        const SceneDescription moved = extremes::moved(scene_of({meshes[i]}), to_column);
         scene.meshes.push_back(moved.meshes.front());
     }
     return scene;
@@ -83,8 +83,9 @@ Finding probabilities_sum(const std::string &what, const FlatScene &flat) {
 }
 
 // What sampling reports of a direction, against a ray of that direction: emitter, distance, radiance and density. From
-// below, the lights' backs are seen.
+// below, the backs of lights in the unit square are seen.
 Finding samples_agree(const std::string &what, KernelProbe &probe, unsigned seed) {
+    const bool around = probe.scene().settings.environment != OPAL_NONE;
     const double scale = probe.scene().scale;
     const auto flat = [&](Vec3 p) { return (p - probe.scene().center) * scale; };
     const Vec3 from = flat({0.7, 0.3, 0.4});
@@ -101,7 +102,7 @@ Finding samples_agree(const std::string &what, KernelProbe &probe, unsigned seed
                  !close(hits.at(HIT_LIGHT_DENSITY, i), drawn.at(LIGHT_DENSITY, i)) ||
                  !close(hits.at(HIT_T, i), drawn.at(LIGHT_DISTANCE, i)) ||
                  !close(hits.at(HIT_RADIANCE_R, i), drawn.at(LIGHT_RADIANCE_R, i)) || drawn.at(LIGHT_ACTIVE, i) != 1 ||
-                 behind.at(LIGHT_ACTIVE, i) != 0;
+                 behind.at(LIGHT_ACTIVE, i) != (around ? 1 : 0);
     // Of points on an edge the ray may hit the neighbour.
     return exact(what + ": " + std::to_string(wrong) + " of 20000 samples differ", wrong <= 20);
 }
@@ -206,8 +207,7 @@ Findings check_refraction(const Sources &sources, unsigned) {
             if (sine2 >= 1)
                 continue;
             const Vec3 truth{-wi.x / eta, -wi.y / eta, wi.z > 0 ? -std::sqrt(1 - sine2) : std::sqrt(1 - sine2)};
-            bent_wrong += length(through - truth) > 1e-5 ||
-                          std::abs(drawn.at(BSDF_WEIGHT_R, 1) - 1) > 1e-5 ||
+            bent_wrong += length(through - truth) > 1e-5 || std::abs(drawn.at(BSDF_WEIGHT_R, 1) - 1) > 1e-5 ||
                           std::abs(drawn.at(BSDF_ETA, 1) - eta) > 1e-5;
             refracted++;
         }
@@ -220,11 +220,30 @@ Findings check_refraction(const Sources &sources, unsigned) {
     return findings;
 }
 
-Findings check_lights(const std::vector<LightCase> &cases, const Sources &sources, unsigned seed) {
-    std::vector<std::pair<std::string, SceneDescription>> scenes = {{"all lights", side_by_side(cases)}};
-    for (const LightCase &light : cases)
-        scenes.emplace_back(light.name, scene_of({light.mesh}));
+// An emitter of scenes by itself.
+Findings check_light(const std::string &name, const Light &light, const Sources &sources, unsigned seed) {
     Findings findings;
+    for (int lanes : tested_lanes()) {
+        KernelProbe probe = probe_of(scene_of_light(light, lanes), lanes, sources);
+        append(findings, scene_emitter_findings(probe, light, name + at_width(lanes), effort_at(lanes, seed)));
+        if (can_be_met(light.kind()))
+            findings.push_back(samples_agree(name + at_width(lanes), probe, seed));
+    }
+    return findings;
+}
+
+Findings check_lights(const std::vector<LightCase> &cases, const Sources &sources, unsigned seed) {
+    std::vector<std::pair<std::string, SceneDescription>> scenes;
+    std::vector<Mesh> meshes;
+    Findings findings;
+    for (const LightCase &light : cases)
+        if (const auto *mesh = std::get_if<Mesh>(&light.emitter)) {
+            meshes.push_back(*mesh);
+            scenes.emplace_back(light.name, scene_of({*mesh}));
+        } else
+            append(findings, check_light(light.name, std::get<Light>(light.emitter), sources, seed++));
+    if (!meshes.empty())
+        scenes.emplace_back("all lights", side_by_side(meshes));
     for (int lanes : tested_lanes())
         for (const auto &[name, scene] : scenes)
             for (const char *emitter_choice : {"uniform", "power"})

@@ -28,8 +28,8 @@ Findings check_trigonometry(const Sources &sources, unsigned seed); // cos_sin_2
 
 // material_findings of these materials.
 Findings check_materials(const std::vector<Material> &materials, const Sources &sources, unsigned seed);
-// Points on each light, and on all in one scene, against their density, for all ways to choose emitters and triangles;
-// densities of points against those of rays that hit them.
+// Directions to each light, and to all meshes in one scene, against their density, for all ways to choose emitters and
+// triangles; samples against rays of their direction; of emitters of scenes, what selftest asks.
 Findings check_lights(const std::vector<LightCase> &cases, const Sources &sources, unsigned seed);
 
 } // namespace opal::test

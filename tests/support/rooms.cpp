@@ -123,7 +123,7 @@ SceneDescription smooth_octahedron() {
 SceneDescription point_light() {
     SceneDescription scene = triangle_light();
     scene.meshes.pop_back();
-    scene.point_lights = {{{0.5, 1.5, 0.9}, {100, 50, 20}, {}}};
+    scene.lights = {{emitter_point{{0.5, 1.5, 0.9}, {100, 50, 20}}, {}}};
     return scene;
 }
 

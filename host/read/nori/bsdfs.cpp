@@ -10,12 +10,9 @@ namespace opal {
 
 namespace {
 
-// Numbers are checked as the device will see them, in single precision.
 uint checked_word(const Properties &properties, const Parameter &parameter, double value) {
-    const float number = static_cast<float>(value);
-    properties.check(parameter.range.holds(number), parameter.xml_name,
-                     fmt::format("must be {}: {}", text_of(parameter), parameter.meaning));
-    return std::bit_cast<uint>(number);
+    check_range(properties, parameter, value);
+    return std::bit_cast<uint>(static_cast<float>(value));
 }
 
 struct BsdfType {
@@ -32,6 +29,8 @@ const std::vector<BsdfType> bsdf_types = {OPAL_BSDFS(OPAL_BSDF_TYPE) OPAL_NESTIN
 void read_parameter(Properties &properties, const Parameter &parameter, std::span<uint> words) {
     switch (parameter.type) {
     case ParameterType::BSDF:
+    case ParameterType::POINT:
+    case ParameterType::VECTOR:
         break;
     case ParameterType::COLOR:
         if (const auto color = properties.color(parameter.xml_name))

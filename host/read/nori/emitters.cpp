@@ -1,5 +1,8 @@
-// Parsers of emitters. Area lights are children of a mesh, point lights of the scene.
+// Parsers of emitters. Area lights are children of a mesh, others of the scene: their parameters are those of
+// cl/emitters/list.h, by their names in the XML.
 #include "read/nori/parsers.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -7,44 +10,74 @@ namespace opal {
 
 namespace {
 
-Color emitted(Properties &properties, const std::string &name) {
-    Color color = properties.required(properties.color(name), name);
-    properties.check(*std::min_element(color.begin(), color.end()) >= 0, name, "must not be negative");
-    return color;
-}
-
 struct EmitterType {
     std::string name;
-    bool of_mesh; // a child of a mesh; false: of the scene
+    std::optional<EmitterParameters> parameters; // with all defaults; nothing: a child of a mesh
 };
 
 // parallelogram_emitter: the 2022 course's name for the area light of a parallelogram.
-const std::vector<EmitterType> emitter_types = {{"area", true}, {"parallelogram_emitter", true}, {"point", false}};
+#define OPAL_EMITTER_TYPE(name, traits) {#name, emitter_##name{}},
+const std::vector<EmitterType> emitter_types = {
+    {"area", {}}, {"parallelogram_emitter", {}}, OPAL_SCENE_EMITTERS(OPAL_EMITTER_TYPE)};
 
-void require_parent(const XmlNode &node, bool in_mesh) {
+const EmitterType &type_in(const XmlNode &node, const char *parent) {
     const EmitterType &type = row_of_type(node, emitter_types);
-    if (type.of_mesh != in_mesh)
-        node.fail("emitter '" + type.name + "' must stand in a <" + (type.of_mesh ? "mesh" : "scene") +
-                  ">, not in a <" + (in_mesh ? "mesh" : "scene") + ">");
+    const std::string wanted = type.parameters ? "scene" : "mesh";
+    if (wanted != parent)
+        node.fail("emitter '" + type.name + "' must stand in a <" + wanted + ">, not in a <" + parent + ">");
+    return type;
 }
+
+std::optional<Color> value_of(Properties &properties, const Parameter &parameter, const Color &) {
+    return properties.color(parameter.xml_name);
+}
+[[maybe_unused]] std::optional<double> value_of(Properties &properties, const Parameter &parameter, double) {
+    return properties.number(parameter.xml_name);
+}
+[[maybe_unused]] std::optional<bool> value_of(Properties &properties, const Parameter &parameter, bool) {
+    return properties.boolean(parameter.xml_name);
+}
+std::optional<Vec3> value_of(Properties &properties, const Parameter &parameter, Vec3) {
+    return parameter.type == ParameterType::POINT ? properties.point(parameter.xml_name)
+                                                  : properties.vector(parameter.xml_name);
+}
+
+void check_value(const Properties &properties, const Parameter &parameter, const Color &color) {
+    for (double channel : color)
+        check_range(properties, parameter, channel);
+}
+[[maybe_unused]] void check_value(const Properties &properties, const Parameter &parameter, double value) {
+    check_range(properties, parameter, value);
+}
+[[maybe_unused]] void check_value(const Properties &, const Parameter &, bool) {}
+void check_value(const Properties &, const Parameter &, Vec3) {}
 
 } // namespace
 
-Color parse_area_emitter(const XmlNode &node, const ParseContext &context) {
-    require_parent(node, true);
-    Properties properties(node, context);
-    Color radiance = emitted(properties, "radiance");
-    properties.finish();
-    return radiance;
+void check_range(const Properties &properties, const Parameter &parameter, double value) {
+    properties.check(parameter.range.holds(static_cast<float>(value)), parameter.xml_name,
+                     fmt::format("must be {}: {}", text_of(parameter), parameter.meaning));
 }
 
-PointLight parse_scene_emitter(const XmlNode &node, const ParseContext &context) {
-    require_parent(node, false);
+Color parse_area_emitter(const XmlNode &node, const ParseContext &context) {
+    type_in(node, "mesh");
     Properties properties(node, context);
-    PointLight light;
-    light.place = node.place();
-    light.position = properties.required(properties.point("position"), "position");
-    light.power = emitted(properties, "power");
+    const Color color = properties.required(properties.color("radiance"), "radiance");
+    properties.check(*std::min_element(color.begin(), color.end()) >= 0, "radiance", "must not be negative");
+    properties.finish();
+    return color;
+}
+
+Light parse_scene_emitter(const XmlNode &node, const ParseContext &context) {
+    Light light{*type_in(node, "scene").parameters, node.place()};
+    Properties properties(node, context);
+    light.visit([&](const Parameter &parameter, auto &value) {
+        const auto given = value_of(properties, parameter, value);
+        if (std::isnan(parameter.initial))
+            properties.required(given, parameter.xml_name);
+        value = given.value_or(value);
+        check_value(properties, parameter, value);
+    });
     properties.finish();
     return light;
 }

@@ -22,7 +22,7 @@ void choose_filter(SceneDescription &scene) {
 }
 
 bool has_light(const SceneDescription &scene) {
-    return !integrator_of(scene.strategy).has(OPAL_ASKS_LIGHTS) || !scene.point_lights.empty() ||
+    return !integrator_of(scene.strategy).has(OPAL_ASKS_LIGHTS) || !scene.lights.empty() ||
            std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh &mesh) { return mesh.radiance; });
 }
 
@@ -51,7 +51,7 @@ SceneDescription parse_scene(const XmlNode &node, const ParseContext &context) {
     for (const XmlNode &mesh : properties.children("mesh"))
         scene.meshes.push_back(parse_mesh(mesh, context));
     for (const XmlNode &emitter : properties.children("emitter"))
-        scene.point_lights.push_back(parse_scene_emitter(emitter, context));
+        scene.lights.push_back(parse_scene_emitter(emitter, context));
     properties.finish();
     choose_filter(scene);
     warn_if_black(scene, node);

@@ -9,7 +9,10 @@ namespace opal {
 Bsdf parse_bsdf(const XmlNode &node, const ParseContext &context);
 
 Color parse_area_emitter(const XmlNode &node, const ParseContext &context); // a child of a mesh; returns its radiance
-PointLight parse_scene_emitter(const XmlNode &node, const ParseContext &context); // a child of the scene
+Light parse_scene_emitter(const XmlNode &node, const ParseContext &context); // a child of the scene
+
+// Error at the property if its value, in single precision as the device sees it, is none that the parameter may have.
+void check_range(const Properties &properties, const Parameter &parameter, double value);
 
 Mesh parse_mesh(const XmlNode &node, const ParseContext &context);
 

@@ -1,0 +1,27 @@
+#include "flatten/emitter_kinds.h"
+
+#include "flatten/distribution.h"
+#include "flatten/store.h"
+
+namespace opal {
+
+double flatten_mesh(const EmittingMesh &from, EmitterRecord &record, FlatScene &scene) {
+    std::vector<double> areas;
+    double area = 0;
+    for (uint id = from.begin; id < from.end; id++) {
+        const auto &[a, b, c] = from.soup.corners[id];
+        areas.push_back(0.5 * length(normal_of(from.soup.vertices[a], from.soup.vertices[b], from.soup.vertices[c])));
+        area += areas.back();
+    }
+    store(*from.mesh.radiance, 1, record.u.of_mesh.radiance);
+    record.u.of_mesh.first_triangle = from.begin;
+    record.first = uint(scene.light_triangles.size());
+    record.count = from.end - from.begin;
+    const AliasTable table = build_alias_table(from.uniform_triangles ? std::vector<double>(areas.size(), 1.0) : areas);
+    for (uint i = 0; i < record.count; i++)
+        scene.light_triangles.push_back({from.slots[from.begin + i], float(table.accept[i]), table.other[i],
+                                         float(areas[i] / table.probability[i])});
+    return area;
+}
+
+} // namespace opal
