@@ -1,5 +1,6 @@
-// The integrators, a row each: INTEGRATOR(with, name, asks, axes, help). From the rows come the choices of the axis
-// `integrator`, dispatch.cl, the features of a kernel, the strategies that make sense, and the names that XML takes.
+// The integrators, a row each: INTEGRATOR(with, name, loop, asks, axes, help). From the rows come the choices of
+// the axis `integrator`, dispatch.cl, the features of a kernel, the strategies that make sense, and the names that XML
+// takes.
 #ifndef OPAL_INTEGRATOR_LIST_H
 #define OPAL_INTEGRATOR_LIST_H
 
@@ -18,16 +19,16 @@ enum {
 #define OPAL_READS_LIGHTING \
     (OPAL_READS_LIGHT_SAMPLING | OPAL_READS(lighting) | OPAL_READS(mis) | OPAL_READS(hemisphere))
 
-// `with` is passed through to INTEGRATOR.
+// loop: the kernel file, kernels/LOOP.cl, whose entry point `render` drives it. `with` is passed through to INTEGRATOR.
 #define OPAL_INTEGRATORS(INTEGRATOR, with) \
-    INTEGRATOR(with, normals, 0, 0, "shading normals as colours") \
-    INTEGRATOR(with, ao, 0, OPAL_READS(hemisphere), "ambient occlusion, unbounded") \
-    INTEGRATOR(with, simple, OPAL_ASKS_OWN_LIGHT, 0, "one point light, no bounces") \
-    INTEGRATOR(with, whitted, OPAL_ASKS_BSDFS | OPAL_ASKS_LIGHTS, OPAL_READS_LIGHT_SAMPLING, \
+    INTEGRATOR(with, normals, render, 0, 0, "shading normals as colours") \
+    INTEGRATOR(with, ao, render, 0, OPAL_READS(hemisphere), "ambient occlusion, unbounded") \
+    INTEGRATOR(with, simple, render, OPAL_ASKS_OWN_LIGHT, 0, "one point light, no bounces") \
+    INTEGRATOR(with, whitted, render, OPAL_ASKS_BSDFS | OPAL_ASKS_LIGHTS, OPAL_READS_LIGHT_SAMPLING, \
                "direct light by emitter sampling, specular surfaces followed") \
-    INTEGRATOR(with, direct_lighting, OPAL_ASKS_BSDFS | OPAL_ASKS_LIGHTS | OPAL_ONE_SAMPLE_MIS, OPAL_READS_LIGHTING, \
-               "one bounce of direct light") \
-    INTEGRATOR(with, path, OPAL_ASKS_BSDFS | OPAL_ASKS_LIGHTS | OPAL_FOLLOWS_PATHS, \
+    INTEGRATOR(with, direct_lighting, render, OPAL_ASKS_BSDFS | OPAL_ASKS_LIGHTS | OPAL_ONE_SAMPLE_MIS, \
+               OPAL_READS_LIGHTING, "one bounce of direct light") \
+    INTEGRATOR(with, path, render, OPAL_ASKS_BSDFS | OPAL_ASKS_LIGHTS | OPAL_FOLLOWS_PATHS, \
                OPAL_READS_LIGHTING | OPAL_READS(rr), "full path tracing")
 
 #endif

@@ -32,7 +32,7 @@ enum {
     AXIS(sampler, 0, "where the random numbers come from")
 
 // CHOICE(axis, name, help).
-#define OPAL_INTEGRATOR_CHOICE(CHOICE, name, asks, axes, help) CHOICE(integrator, name, help)
+#define OPAL_INTEGRATOR_CHOICE(CHOICE, name, loop, asks, axes, help) CHOICE(integrator, name, help)
 #define OPAL_CHOICES_integrator(CHOICE) OPAL_INTEGRATORS(OPAL_INTEGRATOR_CHOICE, CHOICE)
 
 #define OPAL_CHOICES_lighting(CHOICE) \

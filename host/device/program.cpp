@@ -43,8 +43,9 @@ cl::Program build_program(const Device &device, const std::string &text, const B
                                 log_of(program, device.handles->device)));
     }
     const double taken = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    detail(fmt::format("build   {} for {} in {:.3g} s; flags {}; the driver says:\n{}", options.kernels,
-                       device.info.name, taken, build_flags(options), log_of(program, device.handles->device)));
+    detail(fmt::format("build   {} for {} in {:.3g} s; flags {}; the driver says:\n{}",
+                       options.kernels.empty() ? "the renderer" : options.kernels, device.info.name, taken,
+                       build_flags(options), log_of(program, device.handles->device)));
     if (seconds)
         *seconds = taken;
     return program;

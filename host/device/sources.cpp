@@ -150,7 +150,8 @@ std::string program_text(const Features &features, const BuildOptions &options, 
 #undef OPAL_AXIS_DEFINE
     const bool specialised =
         features.axes[AXIS_integrator] >= 0; // the general kernel would take half a minute to compile
-    const std::string body = sources.expand(options.kernels, options.lanes);
+    const std::string loop = fmt::format("kernels/{}.cl", features.loop);
+    const std::string body = sources.expand(options.kernels.empty() ? loop : options.kernels, options.lanes);
     return specialised ? text + inline_all + body + inline_end : text + body;
 }
 

@@ -13,7 +13,7 @@ struct Features;
 struct BuildOptions {
     int lanes = 1;
     MathMode math = MathMode::precise;
-    std::string kernels = "kernels/render.cl"; // the file with the entry points, below cl/
+    std::string kernels{}; // the file with the entry points, below cl/; empty: the loop of the scene's integrator
     // For benchmarks:
     bool count_tests = false;   // kernels count (cl/shared/counters.h); a film then holds rays, shadow rays and rounds
     std::string repeat_stage{}; // a stage that is done twice: "traversal", "sampling" (random numbers)

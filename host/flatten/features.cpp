@@ -203,6 +203,7 @@ Features find_features(const SceneDescription &description, const FlatScene &sce
     }
     if (specialise)
         features.axes[AXIS_hemisphere] = find_hemisphere(description, scene, features.axis_reasons[AXIS_hemisphere]);
+    features.loop = integrator_of(description.strategy).loop;
     features.textured = find_textured(scene, specialise);
     return features;
 }

@@ -24,6 +24,7 @@ struct Feature {
 struct Features {
     std::array<Feature, FEATURE_COUNT> list; // by FEATURE_*
     std::array<uint, BSDF_COUNT> textured{}; // by BSDF_*: the parameters that have a texture, a bit each in their order
+    std::string loop = "render";             // the kernel file that drives the integrator
     std::array<int, AXIS_COUNT> axes{};      // CHOICE_* or -1
     std::array<std::string, AXIS_COUNT> axis_reasons;
     bool operator[](unsigned feature) const { return list[feature].on; }

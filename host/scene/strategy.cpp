@@ -26,7 +26,7 @@ std::span<const Axis> axes() {
 }
 
 std::span<const IntegratorTraits> integrators() {
-#define OPAL_INTEGRATOR_ROW(with, name, asks, axes, help) {#name, asks, axes},
+#define OPAL_INTEGRATOR_ROW(with, name, loop, asks, axes, help) {#name, #loop, asks, axes},
     static const IntegratorTraits table[] = {OPAL_INTEGRATORS(OPAL_INTEGRATOR_ROW, )};
     return table;
 }

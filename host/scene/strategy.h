@@ -28,6 +28,7 @@ int find_choice(int axis, std::string_view name); // throws Error "unknown mis '
 // A row of cl/integrators/list.h.
 struct IntegratorTraits {
     const char *name; // as the list spells it: "direct_lighting"
+    const char *loop; // the kernel file that drives it, without folder and ending
     unsigned asks;    // OPAL_ASKS_BSDFS and so on
     unsigned axes;    // a bit for each axis that it reads, beside `sampler`, which all read
 
