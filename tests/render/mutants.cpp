@@ -9,7 +9,7 @@ using namespace opal::test;
 
 namespace {
 
-const std::string light_hit = "v3_mul(path->throughput, emitted(scene, path, s, active))";
+const std::string light_hit = "v3_mul(path->throughput, light_met(scene, path, s, on_surface, active))";
 const std::string first_only = "to_real(uints_pick(to_mask(path->depth == 1u), (uints)(2), (uints)(1)))";
 
 const std::vector<Control> furnaces = {
@@ -101,6 +101,21 @@ const std::vector<Control> strategies = {
      check_agreement},
     {{"emitters' choice left out of sampled light", "integrators/steps.cl", "light.inverse_pdf / choice.probability",
       "light.inverse_pdf"},
+     "agreement",
+     check_agreement},
+    {{"a sky half as dense", "emitters/constant.cl", "radiance, 1 / square_to_uniform_sphere_pdf(d)",
+      "radiance, 2 / square_to_uniform_sphere_pdf(d)"},
+     "agreement",
+     check_agreement},
+    {{"a sky that is hit weighed as if it were not sampled", "emitters/constant.cl",
+      "return square_to_uniform_sphere_pdf(d);", "return 0 * square_to_uniform_sphere_pdf(d);"},
+     "agreement",
+     check_agreement},
+    {{"rays that escape meet no sky", "emitters/dispatch.cl", "*met = *met | escaped;", ""},
+     "agreement",
+     check_agreement},
+    {{"shadow rays that end before the sky", "emitters/dispatch.cl", "light.infinite ? (real)(FAR)",
+      "light.infinite ? (real)(0.3f)"},
      "agreement",
      check_agreement},
     {{"light behind mirrors and glass taken for sampled", "integrators/steps.cl", "path->specular = sample.discrete;",

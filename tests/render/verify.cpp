@@ -87,8 +87,8 @@ TEST_CASE("A bias of 2 % in one strategy is found, and the strategy is named", "
 TEST_CASE("A bias of 2 % of light sampling is found by the strategies chosen by default", "[verify][stat]") {
     const SceneFolder folder;
     const Mutant mutant{"light samples 2 % too bright", "integrators/steps.cl",
-                        "emitter_radiance(scene, id)), wo.z * inverse_pdf",
-                        "emitter_radiance(scene, id)), R(1.02) * wo.z * inverse_pdf"};
+                        "light.radiance), fabs(wo.z) * inverse_pdf",
+                        "light.radiance), R(1.02) * fabs(wo.z) * inverse_pdf"};
     const Outcome outcome = folder.verify("--budget 30s" + folder.wrong_kernels(mutant));
     INFO(outcome.out << outcome.err);
     CHECK(outcome.exit_code == 1);

@@ -12,12 +12,12 @@ using namespace opal::test;
 
 namespace {
 
-const std::string light_hit = "v3_mul(path->throughput, emitted(scene, path, s, active))";
+const std::string light_hit = "v3_mul(path->throughput, light_met(scene, path, s, on_surface, active))";
 const std::string heuristic = "1 / (1 + (CHOSEN(scene, mis, power) ? ratio * ratio : ratio))";
 
 const std::vector<Mutant> planted = {
-    {"light samples", "integrators/steps.cl", "emitter_radiance(scene, id)), wo.z * inverse_pdf",
-     "emitter_radiance(scene, id)), R(1.02) * wo.z * inverse_pdf"},
+    {"light samples", "integrators/steps.cl", "light.radiance), fabs(wo.z) * inverse_pdf",
+     "light.radiance), R(1.02) * fabs(wo.z) * inverse_pdf"},
     {"uniform directions", "bsdfs/diffuse.cl", "b.use_cosine ? (real)(1) : 2 * wo.z",
      "b.use_cosine ? (real)(1) : R(2.04) * wo.z"},
     {"cosine directions", "bsdfs/diffuse.cl", "b.use_cosine ? (real)(1) : 2 * wo.z",

@@ -46,14 +46,32 @@ Group direct_group() {
          {{"integrator", "path_ems"}, {"max-depth", "2"}, {"triangle-choice", "uniform"}}}};
 }
 
-Group occlusion_group() {
+// The gallery without its ceiling.
+SceneDescription open_gallery() {
     SceneDescription scene = matte_gallery();
-    std::erase_if(scene.meshes, [](const Mesh &mesh) { // the ceiling
+    std::erase_if(scene.meshes, [](const Mesh &mesh) {
         const auto *shape = std::get_if<Parallelogram>(&mesh.shape);
         return shape && shape->origin.y == 1;
     });
-    return {"occlusion",
+    return scene;
+}
+
+Group sky_group() {
+    SceneDescription scene = open_gallery();
+    scene.lights = {{emitter_constant{{1, 2, 3}}, {}}};
+    return {"sky",
             scene,
+            512,
+            {{{"lighting", "bsdf"}, {"hemisphere", "cosine"}},
+             {{"lighting", "emitter"}},
+             {{"lighting", "emitter"}, {"emitter-choice", "power"}},
+             {{"lighting", "mis"}, {"mis", "balance"}},
+             {{"lighting", "mis"}, {"mis", "power"}, {"emitter-choice", "power"}}}};
+}
+
+Group occlusion_group() {
+    return {"occlusion",
+            open_gallery(),
             1024,
             {{{"integrator", "ao"}, {"hemisphere", "uniform"}}, {{"integrator", "ao"}, {"hemisphere", "cosine"}}}};
 }
@@ -81,7 +99,7 @@ Findings agreement_of(const Group &group, const Sources &sources, unsigned seed)
 
 Findings check_agreement(const Sources &sources, unsigned seed) {
     Findings findings = agreement_of(path_group(), sources, seed);
-    for (const Group &group : {direct_group(), occlusion_group()})
+    for (const Group &group : {direct_group(), sky_group(), occlusion_group()})
         append(findings, agreement_of(group, sources, seed + unsigned(findings.size())));
     return findings;
 }
