@@ -10,7 +10,8 @@
 static v3 color_parameter(const Scene *scene, global const ColorParameter *parameter, uints at, v2 uv, int textured,
                           mask active) {
     global const float *value = parameter->value;
-    v3 color = v3_of(GATHER_WORD(real, value, at), GATHER_WORD(real, (value + 1), at), GATHER_WORD(real, (value + 2), at));
+    v3 color = v3_of(GATHER_WORD(real, value, at), GATHER_WORD(real, (value + 1), at),
+                     GATHER_WORD(real, (value + 2), at));
     if (textured) color = v3_mul(color, texture_color(scene, GATHER_WORD(uints, &parameter->texture, at), uv, active));
     return color;
 }
@@ -18,7 +19,10 @@ static v3 color_parameter(const Scene *scene, global const ColorParameter *param
 static real number_parameter(const Scene *scene, global const NumberParameter *parameter, uints at, v2 uv, int textured,
                              mask active) {
     real number = GATHER_WORD(real, &parameter->value, at);
-    if (textured) number = number * luminance(texture_color(scene, GATHER_WORD(uints, &parameter->texture, at), uv, active));
+    if (textured) {
+        v3 factor = texture_color(scene, GATHER_WORD(uints, &parameter->texture, at), uv, active);
+        number = number * luminance(factor);
+    }
     return number;
 }
 

@@ -5,7 +5,9 @@
 #include "shared/parameters.h"
 
 #define OPAL_BSDF_dielectric(PARAMETER) \
-    PARAMETER(NUMBER, int_ior, "intIOR", 1.5046, ABOVE(0), "index of refraction on the side the normal points away from (BK7 glass)") \
-    PARAMETER(NUMBER, ext_ior, "extIOR", 1.000277, ABOVE(0), "index of refraction on the side the normal points to (air)")
+    PARAMETER(NUMBER, int_ior, "intIOR", 1.5046, ABOVE(0), \
+              "index of refraction on the side the normal points away from (BK7 glass)") \
+    PARAMETER(NUMBER, ext_ior, "extIOR", 1.000277, ABOVE(0), \
+              "index of refraction on the side the normal points to (air)")
 
 #endif

@@ -6,6 +6,7 @@
 
 #define OPAL_BSDF_diffuse(PARAMETER) \
     PARAMETER(COLOR, albedo, "albedo", 0.5, AT_LEAST(0), "reflectance") \
-    PARAMETER(FLAG, use_cosine, "use_cosine", false, ANY, "draw directions in proportion to their cosine, else uniformly")
+    PARAMETER(FLAG, use_cosine, "use_cosine", false, ANY, \
+              "draw directions in proportion to their cosine, else uniformly")
 
 #endif

@@ -3,7 +3,8 @@
 // Directions are in the local frame: z is the shading normal, wi points to the viewer, wo to the light; both are unit
 // and point away from the surface.
 //   v3   NAME_eval(b, wi, wo)                   f(wi, wo) without the cosine, 1/sr; 0 for discrete BSDFs
-//   real NAME_pdf(b, wi, wo)                    density of NAME_sample, solid angle measure, 1/sr; 0 for discrete BSDFs
+//   real NAME_pdf(b, wi, wo)                    density of NAME_sample, solid angle measure, 1/sr; 0 of discrete BSDFs,
+//                                               and, if that is simpler, where weights are 0
 //   BsdfSample NAME_sample(b, wi, u, lobe)      draws wo by random numbers u and lobe in [0, 1)
 // A BSDF that leads to others (OPAL_NESTING_BSDFS) offers this alone:
 //   BsdfOpening NAME_open(b, o)                 the BSDF to ask in its place, and the directions to ask it with
@@ -15,8 +16,8 @@
 #include "parameters.cl"
 #include "scene.cl"
 
-// NAME_bsdf, and NAME_at: the parameters at `uv` of the BSDFs whose records begin at word `at`. Lanes that are not active
-// may have records of other kinds: the host pads the table, so that no read passes its end.
+// NAME_bsdf, and NAME_at: the parameters at `uv` of the BSDFs whose records begin at word `at`. Lanes that are not
+// active may have records of other kinds: the host pads the table, so that no read passes its end.
 #define BSDF_READER(name, traits) \
     typedef struct { \
         uints at; \

@@ -39,8 +39,8 @@ static v3 microfacet_eval(microfacet_bsdf b, v3 wi, v3 wo) {
     return v3_pick(above, f, v3_all((real)(0)));
 }
 
-// c D / (4 h.wo) + (1 - c) cos_o / pi, where c is the chance of the coat. It integrates to less than 1, because the coat
-// draws some directions below the surface.
+// c D / (4 h.wo) + (1 - c) cos_o / pi, where c is the chance of the coat. It integrates to less than 1, because the
+// coat draws some directions below the surface.
 static real microfacet_pdf(microfacet_bsdf b, v3 wi, v3 wo) {
     v3 h = v3_normalize(v3_add(wi, wo));
     real coat = square_to_beckmann_pdf(h, b.alpha) / (4 * fabs(v3_dot(h, wo)));

@@ -84,7 +84,7 @@ typedef int2 quarter_keys;
 #define GATHER_8(p, i) GATHER_4(p, i), p[(i).s4], p[(i).s5], p[(i).s6], p[(i).s7]
 #define GATHER_16(p, i) \
     GATHER_8(p, i), p[(i).s8], p[(i).s9], p[(i).sa], p[(i).sb], p[(i).sc], p[(i).sd], p[(i).se], p[(i).sf]
-// Reads `field` of array[i], each lane with its own i: GATHER(real, scene->bsdfs, id, .u.phong.n). It reads for
+// Reads `field` of array[i], each lane with its own i: GATHER(real, scene->emitters, id, .probability). It reads for
 // inactive lanes too: every lane's index must be valid. One vector of word indices lets compilers emit hardware
 // gathers.
 #define GATHER(T, array, i, field) GATHER_WORD(T, &(array)[0] field, (i) * (uint)(sizeof((array)[0]) / 4))
@@ -92,7 +92,7 @@ typedef int2 quarter_keys;
 #define GATHER_WORD(T, pointer, word) ((T)(CAT(GATHER_, LANES)((pointer), (word))))
 #endif
 
-// Reads a field of three floats as one v3: GATHER_V3(scene->bsdfs, id, .u.diffuse.albedo)
+// Reads a field of three floats as one v3: GATHER_V3(scene->emitters, id, .u.of_point.position)
 #define GATHER_V3(array, i, field) \
     v3_of(GATHER(real, array, i, field[0]), GATHER(real, array, i, field[1]), GATHER(real, array, i, field[2]))
 

@@ -68,9 +68,9 @@ typedef struct {
     float radiance[3];
 } emitter_constant_record;
 
-// One emitter. Lanes read the record of a kind from emitters of another kind too, and drop what they read: a member that
-// is an index into a table must stand before `u`.
-#define OPAL_EMITTER_MEMBER(name, traits) emitter_##name##_record of_##name; // "constant" alone is a keyword of OpenCL C
+// One emitter. Lanes read the record of a kind from emitters of another kind too, and drop what they read: a member
+// that is an index into a table must stand before `u`. The members of `u` have a prefix, as "constant" is a keyword.
+#define OPAL_EMITTER_MEMBER(name, traits) emitter_##name##_record of_##name;
 typedef struct {
     uint kind;            // EMITTER_*
     float probability;    // of choosing it (--emitter-choice), as the alias table and the random numbers' grid have it

@@ -152,10 +152,10 @@ static mask scatter(const Scene *scene, Path *path, Surface s, BsdfSample sample
     return active & (v3_largest(path->throughput) >= THROUGHPUT_LEAST);
 }
 
-// What happens to the path at surface s: in the lanes of by_light a direction to a light is sampled, in those of by_bsdf
-// the next segment. The BSDF is asked once for both. Sets *direct, whose visibility is tested later, by visible_light, so
-// that a processor works at this and at the next segment at the same time. Returns the lanes of by_bsdf whose path still
-// carries something.
+// What happens to the path at surface s: in the lanes of by_light a direction to a light is sampled, in those of
+// by_bsdf the next segment. The BSDF is asked once for both. Sets *direct, whose visibility is tested later, by
+// visible_light, so that a processor works at this and at the next segment at the same time. Returns the lanes of
+// by_bsdf whose path still carries something.
 static mask interact(const Scene *scene, Path *path, Surface s, mask by_light, mask by_bsdf, DirectLight *direct) {
     v3 wo;
     LightSample light = sample_light(scene, path, s, by_light, &wo);

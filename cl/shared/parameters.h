@@ -2,7 +2,7 @@
 //
 // A kind lists its parameters in a macro, OPAL_BSDF_phong(PARAMETER), a row each:
 //   PARAMETER(NUMBER, n, "n", 20, AT_LEAST(0), "exponent of the lobe")
-// The columns are type, name, name in the XML, default, range, meaning. The types:
+// The columns are type, name, name in the XML, default (one number for all channels), range, meaning. The types:
 //   COLOR    linear RGB; the range holds for each channel
 //   NUMBER   a number
 //   FLAG     true or false

@@ -10,6 +10,7 @@
 #include "flatten/flat_scene.h"
 #include "render/render_film.h"
 #include "render/report.h"
+#include "scene/options.h"
 #include "selftest/selftest.h"
 #include "sweep/auto.h"
 
@@ -40,7 +41,7 @@ void tell_what_runs(const SceneDescription &scene, const FlatScene &flat, const 
     std::string strategy;
     for (int axis = 0; axis < AXIS_COUNT; axis++)
         strategy += fmt::format("{}{} {}", axis ? ", " : "", axes()[axis].name,
-                                axis == AXIS_integrator ? scene.integrator_type
+                                axis == AXIS_integrator ? integrator_name(scene)
                                                         : axes()[axis].choices[scene.strategy[axis]].name);
     info(fmt::format("scene   {}: {} meshes, {} triangles, {} emitters, {} x {} pixels, {} spp, seed {}",
                      scene.file.string(), scene.meshes.size(), flat.triangles.size(), flat.emitters.size(),

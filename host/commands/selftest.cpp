@@ -68,7 +68,7 @@ void finish(Job &job, ChildProcess &process, ChildProcess::Clock::time_point dea
                 job.problem = json["problem"];
             else
                 job.findings.push_back({json["check"], json["figure"].is_number() ? json["figure"].get<double>() : NAN,
-                                        json["limit"], json["passed"]});
+                                        json["limit"], json["passed"], json["subject"]});
         }
     if (!ending.in_time)
         job.problem = fmt::format("did not end within {:g} s", time_limit);
@@ -150,13 +150,15 @@ const Finding *SelftestReport::find_check(size_t variant, const std::string &che
 }
 
 std::string SelftestReport::row(const Finding &check) const {
-    std::string line = fmt::format("{:<52}{:>10}", check.check, fmt::format("{:.3g}", check.limit));
+    std::string line = fmt::format("{:<52}{:>10}", check.check, fmt::format("{:.3g}", check.limit)), worst;
     for (size_t v = 0; v < variants.size(); v++) {
         const Finding *finding = find_check(v, check.check);
         line += fmt::format("{:>12}{}", finding ? fmt::format("{:.3g}", finding->figure) : "-",
                             finding && !finding->passed ? "!" : " ");
+        if (finding && !finding->passed && !finding->subject.empty())
+            worst = fmt::format("    worst: {}\n", finding->subject);
     }
-    return line + "\n";
+    return line + "\n" + worst;
 }
 
 std::string SelftestReport::text() const {
@@ -188,7 +190,8 @@ nlohmann::json SelftestReport::json() const {
                                                {"math", variant.math},
                                                {"figure", f.figure},
                                                {"limit", f.limit},
-                                               {"passed", f.passed}}));
+                                               {"passed", f.passed},
+                                               {"worst", f.subject}}));
         if (!job.problem.empty())
             report["checks"].push_back(object({{"check", job.group->name},
                                                {"lanes", variant.lanes},
@@ -240,7 +243,11 @@ int run_group(const std::vector<std::string> &words) {
         options.sources = &sources;
         for (const Finding &f : group.run(device, options))
             print("{}{}\n", line_mark,
-                  dump(object({{"check", f.check}, {"figure", f.figure}, {"limit", f.limit}, {"passed", f.passed}})));
+                  dump(object({{"check", f.check},
+                               {"figure", f.figure},
+                               {"limit", f.limit},
+                               {"passed", f.passed},
+                               {"subject", f.subject}})));
     } catch (const std::exception &error) {
         print("{}{}\n", line_mark, dump(object({{"problem", error.what()}})));
     }

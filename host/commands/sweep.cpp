@@ -11,6 +11,7 @@
 #include "commands/options.h"
 #include "plot/svg.h"
 #include "render/report.h"
+#include "scene/options.h"
 #include "sweep/convergence_plot.h"
 #include "sweep/page.h"
 #include "sweep/run.h"
@@ -85,7 +86,7 @@ SweepRecord fresh_record(const Options &o, const SceneDescription &scene, const 
     r.width = scene.camera.width;
     r.height = scene.camera.height;
     r.command = command_line();
-    r.integrator = scene.integrator_type;
+    r.integrator = integrator_name(scene);
     r.replicates = o.replicates;
     r.spp = o.spp;
     std::sort(r.spp.begin(), r.spp.end());

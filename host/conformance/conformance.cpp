@@ -74,7 +74,7 @@ private:
         renderer.render(scene.spp);
         const FilmStatistics film = statistics_of(renderer.film());
         const double n = double(film.samples);
-        judge_mean(scene.integrator_type, {n, film.mean_luminance, film.stderr_luminance * film.stderr_luminance * n},
+        judge_mean(integrator_name(scene), {n, film.mean_luminance, film.stderr_luminance * film.stderr_luminance * n},
                    film.invalid ? fmt::format("{} samples are NaN or infinite", film.invalid) : "");
     }
 

@@ -23,7 +23,7 @@ double samples_per_second(const FilmStatistics &s, const RenderSeconds &seconds)
 } // namespace
 
 json strategy_json(const SceneDescription &scene) {
-    json j = object({{"integrator", scene.integrator_type}});
+    json j = object({{"integrator", integrator_name(scene)}});
     for (const StrategyOption &option : strategy_options()) {
         if (option.name == "lanes") // the report has its own key, the number that was used
             continue;

@@ -161,6 +161,12 @@ const IntegratorType &find_integrator(const std::string &name) {
     return find_row(integrator_types(), "integrator", replaced(name, '-', '_'));
 }
 
+std::string integrator_name(const SceneDescription &scene) {
+    const int chosen = scene.strategy[AXIS_integrator];
+    return find_integrator(scene.integrator_type).integrator == chosen ? scene.integrator_type
+                                                                       : axes()[AXIS_integrator].choices[chosen].name;
+}
+
 void apply_integrator(Strategy &strategy, const IntegratorType &type) {
     strategy[AXIS_integrator] = type.integrator;
     if (type.lighting >= 0)

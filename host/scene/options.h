@@ -2,7 +2,7 @@
 // serves the command line (--max-depth), the XML (<integer name="maxDepth">), the JSON reports and `opal inspect`.
 #pragma once
 
-#include "scene/strategy.h"
+#include "scene/scene.h"
 
 #include <functional>
 #include <map>
@@ -37,6 +37,8 @@ struct IntegratorType {
 
 std::span<const IntegratorType> integrator_types();
 const IntegratorType &find_integrator(const std::string &name); // '-' and '_' are alike; Error "unknown integrator ..."
+// The name of a scene's integrator: its type as written, or another that was chosen in its place.
+std::string integrator_name(const SceneDescription &scene);
 void apply_integrator(Strategy &strategy, const IntegratorType &type);
 
 // Sets options by name ("lighting" -> "mis", "max-depth" -> "5"), as the command line overrides what a scene says.

@@ -3,27 +3,39 @@
 #include "stats/hypothesis.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace opal {
 
 namespace {
 
+// Two findings of one check. Nothing is worse than a NaN.
+bool is_worse(const Finding &a, const Finding &b) {
+    if (std::isnan(a.figure) || std::isnan(b.figure))
+        return !std::isnan(b.figure);
+    return a.kind == FigureKind::p_value ? a.figure < b.figure : a.figure > b.figure;
+}
+
+// cases: with one of that check at least.
 Finding summary_of_check(const std::string &check, const Findings &cases) {
-    double figure = NAN, limit = 0, count = 0;
-    FigureKind kind{};
+    double figure = 0, count = 0;
+    const Finding *worst = nullptr;
     for (const Finding &finding : cases) {
         if (finding.check != check)
             continue;
-        kind = finding.kind;
-        limit = finding.limit;
-        figure = count++ == 0                  ? finding.figure
-                 : kind == FigureKind::p_value ? std::min(figure, finding.figure)
-                 : kind == FigureKind::error   ? worst_of(figure, finding.figure)
-                                               : figure + finding.figure;
+        if (!worst || is_worse(finding, *worst))
+            worst = &finding;
+        figure += finding.figure;
+        count++;
     }
-    return kind == FigureKind::p_value ? p_value(check, stats::sidak_p(figure, count))
-           : kind == FigureKind::error ? at_most(check, figure, limit)
-                                       : none_wrong(check, figure);
+    switch (worst->kind) {
+    case FigureKind::p_value:
+        return p_value(check, stats::sidak_p(worst->figure, count), worst->subject);
+    case FigureKind::error:
+        return at_most(check, worst->figure, worst->limit, worst->subject);
+    default:
+        return none_wrong(check, figure, worst->subject);
+    }
 }
 
 } // namespace

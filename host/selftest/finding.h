@@ -39,7 +39,7 @@ inline double worst_of(double a, double b) { return a != a || a > b ? a : b; }
 void append(Findings &findings, Findings more);
 
 // One finding for each check, in the order of their first cases: the smallest p-value of its cases, corrected for their
-// number (Sidak), the largest error, the sum of the counts.
+// number (Sidak), the largest error, the sum of the counts. Its subject is the worst case.
 Findings summary_of(const Findings &cases);
 
 } // namespace opal

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/table.h"
 
 #include <fmt/format.h>
 
@@ -40,9 +41,11 @@ std::string names_of_integrators(unsigned trait) {
 void check_mis(const Strategy &strategy) {
     if (strategy[AXIS_mis] != CHOICE_mis_one_sample)
         return;
+    std::vector<std::string> others = names_of(axes()[AXIS_mis].choices);
+    others.erase(others.begin() + CHOICE_mis_one_sample);
     if (!integrator_of(strategy).has(OPAL_ONE_SAMPLE_MIS))
         refuse("mis one-sample without integrator " + names_of_integrators(OPAL_ONE_SAMPLE_MIS),
-               "one sample of either kind cannot be counted in and go on as a path; available: balance, power");
+               "one sample of either kind cannot be counted in and go on as a path; available: " + joined(others));
     if (!can_take_one_sample(strategy))
         refuse("mis one-sample without lighting mis", "there is only one kind of sample, and nothing to choose from");
 }

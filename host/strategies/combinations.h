@@ -23,9 +23,9 @@ std::vector<NamedStrategy> named_strategies(const SceneDescription &scene, const
 
 // All unbiased strategies that end and have the expectation of the scene's integrator, each once. An axis that changes
 // nothing on this scene (the MIS heuristic without MIS, the choice among one emitter) keeps the scene's choice. BSDF
-// sampling is left out if there are delta lights, as points are, which it cannot hit. If there are more than `most`, the
-// result is a covering set: every pair of choices that occurs in a strategy occurs in the set (greedy; Cohen et al.,
-// IEEE TSE 23, 1997). The scene's own strategy comes first if it is among them.
+// sampling is left out if there are delta lights, as points are, which it cannot hit. If there are more than `most`,
+// the result is a covering set: every pair of choices that occurs in a strategy occurs in the set (greedy; Cohen et
+// al., IEEE TSE 23, 1997). The scene's own strategy comes first if it is among them.
 std::vector<NamedStrategy> sensible_strategies(const SceneDescription &scene, size_t most = 12);
 
 } // namespace opal

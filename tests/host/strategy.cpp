@@ -1,5 +1,6 @@
 #include "scene/strategy.h"
 #include "base/log.h"
+#include "base/table.h"
 #include "read/nori/load.h"
 #include "scene/options.h"
 #include "strategies/check.h"
@@ -71,9 +72,20 @@ TEST_CASE("a choice is found with either dash, or fails with the list", "[strate
     CHECK(find_choice(AXIS_mis, "one-sample") == CHOICE_mis_one_sample);
     CHECK(find_choice(AXIS_mis, "one_sample") == CHOICE_mis_one_sample);
     CHECK(error_of([] { find_choice(AXIS_mis, "powr"); }) ==
-          "unknown mis 'powr'; did you mean 'power'? available: balance, power, one-sample");
+          "unknown mis 'powr'; did you mean 'power'? available: " + joined(names_of(axes()[AXIS_mis].choices)));
     CHECK(error_of([] { find_choice(AXIS_emitter_choice, "x"); }) ==
           "unknown emitter-choice 'x'; available: uniform, power");
+}
+
+TEST_CASE("a scene's integrator bears the name that was written, unless another is chosen", "[strategy]") {
+    SceneDescription scene = lit_scene();
+    scene.integrator_type = "path_mats";
+    apply_integrator(scene.strategy, find_integrator("path_mats"));
+    CHECK(integrator_name(scene) == "path_mats");
+    override_strategy(scene.strategy, {{"lighting", "mis"}});
+    CHECK(integrator_name(scene) == "path_mats");
+    override_strategy(scene.strategy, {{"integrator", "ao"}});
+    CHECK(integrator_name(scene) == "ao");
 }
 
 TEST_CASE("overrides set axes and numbers", "[strategy]") {
@@ -237,7 +249,9 @@ TEST_CASE("everything that means something passes", "[strategy]") {
                                                                 {"max-depth", "9"}});
                         ++(error.empty() ? passed : refused);
                     }
-    CHECK(passed == (3 * 2 + 3 * 2 + 1) * 3 * 4); // one-sample: direct_lighting with lighting mis alone
+    // one-sample: direct_lighting with lighting mis alone
+    const int others = int(axes()[AXIS_mis].choices.size()) - 1;
+    CHECK(passed == (3 * others + 3 * others + 1) * 3 * 4);
     CHECK(refused == (3 + 2) * 3 * 4);
 }
 

@@ -8,7 +8,7 @@ namespace opal {
 
 Bsdf parse_bsdf(const XmlNode &node, const ParseContext &context);
 
-Color parse_area_emitter(const XmlNode &node, const ParseContext &context); // a child of a mesh; returns its radiance
+Color parse_area_emitter(const XmlNode &node, const ParseContext &context);  // a child of a mesh; returns its radiance
 Light parse_scene_emitter(const XmlNode &node, const ParseContext &context); // a child of the scene
 
 // Error at the property if its value, in single precision as the device sees it, is none that the parameter may have.
