@@ -33,7 +33,7 @@ const std::vector<Control> furnaces = {
      "furnace",
      check_furnace},
     {{"whitted's roulette without division", "integrators/whitted.cl",
-      "v3_scale(path->throughput, 1 / survives.probability)", "path->throughput"},
+      "specular ? 1 / survives.probability : (real)(1)", "(real)(1)"},
      "glass furnace",
      check_glass_furnace},
     {{"eta inverted in the scaling of radiance", "integrators/steps.cl", "1 / square(sample.eta)",
