@@ -5,35 +5,27 @@
 #include "shared/parameters.h"
 #include "textures/dispatch.cl"
 
-// The parameter of the records that begin at word `at` of the table in which `parameter` lies in the first record. uv:
-// where textures are asked; textured: whether the kernel's scene has a texture there; active: lanes that are meant.
-static v3 color_parameter(const Scene *scene, global const ColorParameter *parameter, uints at, v2 uv, int textured,
-                          mask active) {
+// The parameters of the records that begin at word `at` of the table in which `parameter` lies in the first record.
+static v3 color_parameter(global const ColorParameter *parameter, uints at) {
     global const float *value = parameter->value;
-    v3 color = v3_of(GATHER_WORD(real, value, at), GATHER_WORD(real, (value + 1), at),
-                     GATHER_WORD(real, (value + 2), at));
-    if (textured) color = v3_mul(color, texture_color(scene, GATHER_WORD(uints, &parameter->texture, at), uv, active));
-    return color;
+    return v3_of(GATHER_WORD(real, value, at), GATHER_WORD(real, (value + 1), at), GATHER_WORD(real, (value + 2), at));
 }
-
-static real number_parameter(const Scene *scene, global const NumberParameter *parameter, uints at, v2 uv, int textured,
-                             mask active) {
-    real number = GATHER_WORD(real, &parameter->value, at);
-    if (textured) {
-        v3 factor = texture_color(scene, GATHER_WORD(uints, &parameter->texture, at), uv, active);
-        number = number * luminance(factor);
-    }
-    return number;
+static real number_parameter(global const NumberParameter *parameter, uints at) {
+    return GATHER_WORD(real, &parameter->value, at);
 }
-
-static mask flag_parameter(const Scene *scene, global const uint *parameter, uints at, v2 uv, int textured,
-                          mask active) {
+static mask flag_parameter(global const uint *parameter, uints at) {
     return to_mask(GATHER_WORD(uints, parameter, at) != 0);
 }
+static uints bsdf_parameter(global const uint *parameter, uints at) { return GATHER_WORD(uints, parameter, at); }
 
-static uints bsdf_parameter(const Scene *scene, global const uint *parameter, uints at, v2 uv, int textured,
-                          mask active) {
-    return GATHER_WORD(uints, parameter, at);
+// The same times what the records' textures say at uv.
+static v3 textured_color(const Scene *scene, global const ColorParameter *parameter, uints at, v2 uv, mask active) {
+    v3 factor = texture_color(scene, GATHER_WORD(uints, &parameter->texture, at), uv, active);
+    return v3_mul(color_parameter(parameter, at), factor);
+}
+static real textured_number(const Scene *scene, global const NumberParameter *parameter, uints at, v2 uv, mask active) {
+    v3 factor = texture_color(scene, GATHER_WORD(uints, &parameter->texture, at), uv, active);
+    return number_parameter(parameter, at) * luminance(factor);
 }
 
 // A list of parameters as members of the lanes' struct: OPAL_BSDF_phong(LANES_MEMBER).
@@ -46,10 +38,14 @@ static uints bsdf_parameter(const Scene *scene, global const uint *parameter, ui
 // The places of parameters in their list: a bit each of OPAL_TEXTURED_*.
 #define PARAMETER_PLACE(type, name, xml, initial, range, meaning) PLACE_##name,
 
-// Statements that read a list of parameters into the members of `lanes`, from `record` at `at`.
-#define READ_PARAMETER(type, name, xml, initial, range, meaning) \
-    lanes.name = READ_PARAMETER_##type(scene, &record->name, at, uv, textured >> PLACE_##name & 1, active);
-#define READ_PARAMETER_COLOR color_parameter
-#define READ_PARAMETER_NUMBER number_parameter
-#define READ_PARAMETER_FLAG flag_parameter
-#define READ_PARAMETER_BSDF bsdf_parameter
+// Statements that read a list of parameters into the members of `lanes`, from `record` at `at`. `textured`, a constant,
+// has the bits of the parameters that have a texture in the kernel's scene.
+#define READ_PARAMETER(type, name, xml, initial, range, meaning) READ_##type(name)
+#define READ_COLOR(name) \
+    if (textured >> PLACE_##name & 1) lanes.name = textured_color(scene, &record->name, at, uv, active); \
+    else lanes.name = color_parameter(&record->name, at);
+#define READ_NUMBER(name) \
+    if (textured >> PLACE_##name & 1) lanes.name = textured_number(scene, &record->name, at, uv, active); \
+    else lanes.name = number_parameter(&record->name, at);
+#define READ_FLAG(name) lanes.name = flag_parameter(&record->name, at);
+#define READ_BSDF(name) lanes.name = bsdf_parameter(&record->name, at);

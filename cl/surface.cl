@@ -58,7 +58,7 @@ static real ray_offset_of(v3 p0, v3 p1, v3 p2) {
 }
 
 // Where a ray starts that leaves the surface in direction d: the ray offset above p, on d's side.
-static v3 leave_surface(Surface s, v3 d) {
-    real side = copysign(s.ray_offset, v3_dot(s.normal, d));
-    return v3_mad(s.normal, side, s.p);
+static v3 leave_surface(const Surface *s, v3 d) {
+    real side = copysign(s->ray_offset, v3_dot(s->normal, d));
+    return v3_mad(s->normal, side, s->p);
 }

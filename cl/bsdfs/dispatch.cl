@@ -8,13 +8,30 @@
 
 #define COUNT_BSDF(name, traits) +OPAL_HAS_bsdf_##name
 #define COUNT_TRANSMITTING(name, traits) +(OPAL_HAS_bsdf_##name && ((traits) & OPAL_TRANSMITS) != 0)
+#define IS_DISCRETE(traits) (((traits) & OPAL_SMOOTH) == 0)
+#define COUNT_DISCRETE(name, traits) +(OPAL_HAS_bsdf_##name && IS_DISCRETE(traits))
+#define IS_LIT_FROM_BEHIND(traits) (((traits) & OPAL_SMOOTH) && ((traits) & OPAL_TRANSMITS))
+#define COUNT_BOTH_SIDES(name, traits) +(OPAL_HAS_bsdf_##name && IS_LIT_FROM_BEHIND(traits))
 enum { // of this kernel
     BSDF_KINDS = 0 OPAL_BSDFS(COUNT_BSDF),
     TRANSMITTING_BSDF_KINDS = 0 OPAL_BSDFS(COUNT_TRANSMITTING),
+    DISCRETE_BSDF_KINDS = 0 OPAL_BSDFS(COUNT_DISCRETE),
+    BOTH_SIDES_BSDF_KINDS = 0 OPAL_BSDFS(COUNT_BOTH_SIDES),
     NESTING_BSDF_KINDS = 0 OPAL_NESTING_BSDFS(COUNT_BSDF)
 };
 
-static uints bsdf_kind(const Scene *scene, uints at) { return GATHER_WORD(uints, scene->bsdfs, at); }
+// The kind, where the kernel has several; else nobody asks.
+static uints bsdf_kind(const Scene *scene, uints at) {
+    if (BSDF_KINDS + NESTING_BSDF_KINDS < 2) return (uints)(0);
+    return GATHER_WORD(uints, scene->bsdfs, at);
+}
+
+// The lanes of that kind, by bsdf_kind.
+static mask bsdf_lanes(uints kind, uint wanted) {
+    if (BSDF_KINDS == 1) return ALL_LANES;
+    return to_mask(kind == wanted);
+}
+
 
 // Sets the surface's BSDF, frame and wi to those of the BSDF that nested ones lead to. The functions below are asked
 // after that.
@@ -48,23 +65,24 @@ typedef struct {
 // Evaluates the surface's BSDFs in direction wo, in the lanes of `evaluated`, and draws a direction by u and lobe,
 // independent numbers in [0, 1), in those of `sampled`. f, pdf and the weight are 0 in other lanes. Both in one call,
 // because each kind's code is compiled, and each material read, once a call.
-static BsdfResponse bsdf_respond(const Scene *scene, Surface s, v3 wo, mask evaluated, v2 u, real lobe, mask sampled) {
+static BsdfResponse bsdf_respond(const Scene *scene, const Surface *s, v3 wo, mask evaluated, v2 u, real lobe,
+                                 mask sampled) {
     BsdfResponse r;
     r.f = v3_all((real)(0));
     r.pdf = 0;
-    r.sample = bsdf_sample_of(s.wi, v3_all((real)(0)), (real)(0), (real)(1), NO_LANES);
-    uints kind = bsdf_kind(scene, s.bsdf);
+    r.sample = bsdf_sample_of(s->wi, v3_all((real)(0)), (real)(0), (real)(1), NO_LANES);
+    uints kind = bsdf_kind(scene, s->bsdf);
 #define RESPOND(name, traits) \
     if (OPAL_HAS_bsdf_##name) { \
-        mask same = BSDF_KINDS == 1 ? ALL_LANES : to_mask(kind == BSDF_##name); \
+        mask same = bsdf_lanes(kind, BSDF_##name); \
         mask m_evaluated = evaluated & same, m_sampled = sampled & same; \
         if (ANY(m_evaluated | m_sampled)) { \
-            name##_bsdf b = name##_at(scene, s.bsdf, v2_of(s.u, s.v), m_evaluated | m_sampled); \
-            if (((traits) & OPAL_SMOOTH) && ANY(m_evaluated)) { \
-                r.f = v3_pick(m_evaluated, name##_eval(b, s.wi, wo), r.f); \
-                r.pdf = m_evaluated ? name##_pdf(b, s.wi, wo) : r.pdf; \
+            name##_bsdf b = name##_at(scene, s->bsdf, v2_of(s->u, s->v), m_evaluated | m_sampled); \
+            if (!IS_DISCRETE(traits)) { \
+                r.f = v3_pick(m_evaluated, name##_eval(b, s->wi, wo), r.f); \
+                r.pdf = m_evaluated ? name##_pdf(b, s->wi, wo) : r.pdf; \
             } \
-            if (ANY(m_sampled)) r.sample = bsdf_sample_pick(m_sampled, name##_sample(b, s.wi, u, lobe), r.sample); \
+            r.sample = bsdf_sample_pick(m_sampled, name##_sample(b, s->wi, u, lobe), r.sample); \
         } \
     }
     OPAL_BSDFS(RESPOND)
@@ -72,16 +90,17 @@ static BsdfResponse bsdf_respond(const Scene *scene, Surface s, v3 wo, mask eval
 }
 
 // The sample alone.
-static BsdfSample bsdf_sample(const Scene *scene, Surface s, v2 u, real lobe, mask active) {
-    return bsdf_respond(scene, s, s.wi, NO_LANES, u, lobe, active).sample;
+static BsdfSample bsdf_sample(const Scene *scene, const Surface *s, v2 u, real lobe, mask active) {
+    return bsdf_respond(scene, s, s->wi, NO_LANES, u, lobe, active).sample;
 }
 
 // The lanes whose BSDF is discrete and nothing else: light sampling cannot serve it.
 static mask bsdf_is_discrete(const Scene *scene, uints at) {
+    if (DISCRETE_BSDF_KINDS == 0) return NO_LANES;
     uints kind = bsdf_kind(scene, at);
     mask discrete = NO_LANES;
 #define ADD_DISCRETE(name, traits) \
-    if (OPAL_HAS_bsdf_##name && !((traits) & OPAL_SMOOTH)) discrete = discrete | to_mask(kind == BSDF_##name);
+    if (OPAL_HAS_bsdf_##name && IS_DISCRETE(traits)) discrete = discrete | bsdf_lanes(kind, BSDF_##name);
     OPAL_BSDFS(ADD_DISCRETE)
     return discrete;
 }
@@ -89,11 +108,12 @@ static mask bsdf_is_discrete(const Scene *scene, uints at) {
 // The lanes where wo lies on a side from which light may reach wi: the front, or either where some of the light that
 // passes through has a density.
 static mask bsdf_is_lit_from(const Scene *scene, uints at, v3 wo) {
-    uints kind = bsdf_kind(scene, at);
     mask lit = wo.z > 0;
+    if (BOTH_SIDES_BSDF_KINDS == 0) return lit;
+    uints kind = bsdf_kind(scene, at);
 #define ADD_LIT(name, traits) \
-    if (OPAL_HAS_bsdf_##name && ((traits) & OPAL_SMOOTH) && ((traits) & OPAL_TRANSMITS)) \
-        lit = lit | to_mask(kind == BSDF_##name);
+    if (OPAL_HAS_bsdf_##name && IS_LIT_FROM_BEHIND(traits)) \
+        lit = lit | bsdf_lanes(kind, BSDF_##name);
     OPAL_BSDFS(ADD_LIT)
     return lit;
 }

@@ -27,6 +27,6 @@ static LightSample sample_of_point(ReferencePoint from, v3 p, v3 normal, v3 shad
 
 // The density with which sample_of_point finds the direction d of a ray that met the surface s:
 // 1 / area_to_solid_angle(), by one division.
-static real pdf_of_hit(real inverse_pdf, v3 d, Surface s) {
-    return square(s.t) / (inverse_pdf * fabs(v3_dot(s.normal, d)));
+static real pdf_of_hit(real inverse_pdf, v3 d, const Surface *s) {
+    return square(s->t) / (inverse_pdf * fabs(v3_dot(s->normal, d)));
 }

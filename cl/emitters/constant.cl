@@ -13,10 +13,10 @@ static LightSample emitter_constant_sample(const Scene *scene, uints id, Referen
     return light_sample_of(d, (real)(FAR), radiance, 1 / square_to_uniform_sphere_pdf(d), from.p, ALL_LANES);
 }
 
-static v3 emitter_constant_radiance(const Scene *scene, uints id, v3 d, Surface s) {
+static v3 emitter_constant_radiance(const Scene *scene, uints id, v3 d, const Surface *s) {
     return GATHER_V3(scene->emitters, id, .u.of_constant.radiance);
 }
 
-static real emitter_constant_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, Surface s) {
+static real emitter_constant_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, const Surface *s) {
     return square_to_uniform_sphere_pdf(d);
 }

@@ -19,7 +19,11 @@ enum { // kinds of this kernel
     INFINITE_KINDS = 0 OPAL_EMITTERS(COUNT_INFINITE),
 };
 
-static uints emitter_kind(const Scene *scene, uints id) { return GATHER(uints, scene->emitters, id, .kind); }
+// The kind, where the kernel has several; else nobody asks.
+static uints emitter_kind(const Scene *scene, uints id) {
+    if (EMITTER_KINDS < 2) return (uints)(0);
+    return GATHER(uints, scene->emitters, id, .kind);
+}
 
 // The active lanes whose emitter is of that kind; kinds: how many there may be.
 static mask emitter_lanes(uints kind, uint wanted, int kinds, mask active) {
@@ -38,7 +42,8 @@ static LightSample emitter_sample(const Scene *scene, uints id, ReferencePoint f
             s.active = s.active & m; \
             s.discrete = ((traits) & OPAL_DELTA) != 0 ? ALL_LANES : NO_LANES; \
             s.infinite = ((traits) & OPAL_INFINITE) != 0 ? ALL_LANES : NO_LANES; \
-            sample = EMITTER_KINDS == 1 ? s : light_sample_pick(m, s, sample); \
+            if (EMITTER_KINDS == 1) return s; \
+            sample = light_sample_pick(m, s, sample); \
         } \
     }
     OPAL_EMITTERS(SAMPLE_EMITTER)
@@ -47,7 +52,7 @@ static LightSample emitter_sample(const Scene *scene, uints id, ReferencePoint f
 
 // Radiance of the emitters `id`, W / (m^2 sr), that rays of direction d find: where they met the surface s, or where
 // they left the scene. 0 in lanes that are not active.
-static v3 emitter_radiance(const Scene *scene, uints id, v3 d, Surface s, mask active) {
+static v3 emitter_radiance(const Scene *scene, uints id, v3 d, const Surface *s, mask active) {
     v3 radiance = v3_all((real)(0));
     uints kind = emitter_kind(scene, id);
 #define RADIANCE_OF_EMITTER(name, traits) \
@@ -61,7 +66,7 @@ static v3 emitter_radiance(const Scene *scene, uints id, v3 d, Surface s, mask a
 
 // Density, solid angle measure, with which light sampling at `from` draws the direction d that met s, or that left the
 // scene, given the emitter. 0 in lanes that are not active.
-static real emitter_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, Surface s, mask active) {
+static real emitter_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, const Surface *s, mask active) {
     real pdf = 0;
     uints kind = emitter_kind(scene, id);
 #define PDF_OF_EMITTER(name, traits) \
@@ -75,9 +80,9 @@ static real emitter_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d,
 
 // The emitters that rays meet: that of the surface s, on its shading normal's side, where they hit one; else the
 // environment. Sets *met to the active lanes that meet one; the others' ids are valid.
-static uints emitter_met(const Scene *scene, Surface s, mask hit, mask active, mask *met) {
-    *met = active & hit & to_mask(s.emitter != OPAL_NONE) & (s.wi.z > 0);
-    uints id = s.emitter;
+static uints emitter_met(const Scene *scene, const Surface *s, mask hit, mask active, mask *met) {
+    *met = active & hit & to_mask(s->emitter != OPAL_NONE) & (s->wi.z > 0);
+    uints id = s->emitter;
     if (ENVIRONMENT_KINDS > 0) {
         uints environment = (uints)(scene->settings->environment);
         mask escaped = active & !hit & to_mask(environment != OPAL_NONE);
@@ -88,7 +93,7 @@ static uints emitter_met(const Scene *scene, Surface s, mask hit, mask active, m
 }
 
 // The shadow ray from the surface s to a light.
-static Ray shadow_ray(Surface s, LightSample light) {
+static Ray shadow_ray(const Surface *s, LightSample light) {
     v3 start = leave_surface(s, light.d), d = v3_sub(light.end, start);
     Ray ray = {start, d, (real)(0), (real)(1)}; // 1: the light's own surface
     if (INFINITE_KINDS > 0) {

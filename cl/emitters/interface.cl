@@ -19,8 +19,8 @@ typedef struct {
     v3 n; // shading normal, unit; 0 in free space
 } ReferencePoint;
 
-static ReferencePoint reference_point(Surface s) {
-    ReferencePoint from = {s.p, s.frame.n};
+static ReferencePoint reference_point(const Surface *s) {
+    ReferencePoint from = {s->p, s->frame.n};
     return from;
 }
 

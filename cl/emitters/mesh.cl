@@ -27,12 +27,12 @@ static LightSample emitter_mesh_sample(const Scene *scene, uints id, ReferencePo
                            GATHER_V3(scene->emitters, id, .u.of_mesh.radiance));
 }
 
-static v3 emitter_mesh_radiance(const Scene *scene, uints id, v3 d, Surface s) {
+static v3 emitter_mesh_radiance(const Scene *scene, uints id, v3 d, const Surface *s) {
     return GATHER_V3(scene->emitters, id, .u.of_mesh.radiance);
 }
 
-static real emitter_mesh_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, Surface s) {
-    uints place = s.primitive - GATHER(uints, scene->emitters, id, .u.of_mesh.first_triangle);
+static real emitter_mesh_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, const Surface *s) {
+    uints place = s->primitive - GATHER(uints, scene->emitters, id, .u.of_mesh.first_triangle);
     // In other lanes `place` may be anything.
     uints row = uints_pick(to_mask(place < GATHER(uints, scene->emitters, id, .count)),
                            GATHER(uints, scene->emitters, id, .first) + place, (uints)(0));

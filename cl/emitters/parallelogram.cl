@@ -18,10 +18,10 @@ static LightSample emitter_parallelogram_sample(const Scene *scene, uints id, Re
                            GATHER_V3(scene->emitters, id, .u.of_parallelogram.radiance));
 }
 
-static v3 emitter_parallelogram_radiance(const Scene *scene, uints id, v3 d, Surface s) {
+static v3 emitter_parallelogram_radiance(const Scene *scene, uints id, v3 d, const Surface *s) {
     return GATHER_V3(scene->emitters, id, .u.of_parallelogram.radiance);
 }
 
-static real emitter_parallelogram_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, Surface s) {
+static real emitter_parallelogram_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, const Surface *s) {
     return pdf_of_hit(GATHER(real, scene->emitters, id, .u.of_parallelogram.area), d, s);
 }

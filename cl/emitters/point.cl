@@ -15,6 +15,8 @@ static LightSample emitter_point_sample(const Scene *scene, uints id, ReferenceP
                            v3_scale(intensity, square(inverse_distance)), (real)(1), p, inverse_distance < FAR);
 }
 
-static v3 emitter_point_radiance(const Scene *scene, uints id, v3 d, Surface s) { return v3_all((real)(0)); }
+static v3 emitter_point_radiance(const Scene *scene, uints id, v3 d, const Surface *s) { return v3_all((real)(0)); }
 
-static real emitter_point_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, Surface s) { return (real)(0); }
+static real emitter_point_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, const Surface *s) {
+    return (real)(0);
+}

@@ -18,7 +18,7 @@ static mask ao_step(const Scene *scene, Path *path, Hit hit, mask active) {
     v3 wo = cosine ? square_to_cosine_hemisphere(u) : square_to_uniform_hemisphere(u);
     real weight = cosine ? (real)(1) : 2 * wo.z; // cos / pi over the density
     v3 d = to_world(s.frame, wo);
-    Ray ray = {leave_surface(s, d), d, (real)(0), (real)(FAR)};
+    Ray ray = {leave_surface(&s, d), d, (real)(0), (real)(FAR)};
     mask open = active & !any_hit(scene, ray, active);
     path->radiance = v3_pick(open, v3_all(weight), path->radiance);
     return NO_LANES;

@@ -17,7 +17,7 @@ static mask direct_lighting_step(const Scene *scene, Path *path, Hit hit, mask a
     mask on_surface = active & is_hit(hit);
     if (ENVIRONMENT_KINDS == 0 && !ANY(on_surface)) return on_surface;
     Surface s = surface_at(scene, path->ray, hit, on_surface);
-    v3 met = light_met(scene, path, s, on_surface, active);
+    v3 met = light_met(scene, path, &s, on_surface, active);
     path->radiance = v3_add(path->radiance, v3_mul(path->throughput, met));
 
     // The first surface gathers direct light, unless it is a light.
@@ -27,16 +27,17 @@ static mask direct_lighting_step(const Scene *scene, Path *path, Hit hit, mask a
     bsdf_open(scene, &s, active);
     mask discrete = bsdf_is_discrete(scene, s.bsdf);
     mask by_bsdf = active, by_light = active & !discrete;
+    v2 u = path_draw(scene, path, DIM_LOBE);
     if (CHOSEN(scene, lighting, emitter)) by_bsdf = active & discrete;
     if (CHOSEN(scene, lighting, mis) && CHOSEN(scene, mis, one_sample)) {
-        Choice light = choose((real)(R(0.5)), path_draw(scene, path, DIM_LOBE).y);
+        Choice light = choose((real)(R(0.5)), u.y);
         by_bsdf = active & (discrete | !light.first);
         by_light = by_light & light.first;
         path->throughput = v3_scale(path->throughput, discrete ? (real)(1) : 1 / light.probability);
     }
     if (CHOSEN(scene, lighting, bsdf)) by_light = NO_LANES;
     DirectLight direct;
-    active = interact(scene, path, s, by_light, by_bsdf, &direct);
+    active = interact(scene, path, &s, by_light, by_bsdf, u.x, &direct);
     path->radiance = v3_add(path->radiance, visible_light(scene, direct));
     return active;
 }

@@ -16,17 +16,17 @@ static mask path_step(const Scene *scene, Path *path, Hit hit, mask active) {
     Surface s = surface_at(scene, path->ray, hit, on_surface);
 
     // Light that the ray meets
-    add_radiance(scene, path, v3_mul(path->throughput, light_met(scene, path, s, on_surface, active)));
+    add_radiance(scene, path, v3_mul(path->throughput, light_met(scene, path, &s, on_surface, active)));
     active = on_surface & to_mask(path->depth < scene->settings->max_depth);
     if (!ANY(active)) return active;
 
     // Light that is sampled, and the next segment
     bsdf_open(scene, &s, active);
     mask by_light = CHOSEN(scene, lighting, bsdf) ? NO_LANES : active & !bsdf_is_discrete(scene, s.bsdf);
-    real u = path_draw(scene, path, DIM_LOBE).y;
+    v2 u = path_draw(scene, path, DIM_LOBE);
     DirectLight direct;
-    active = interact(scene, path, s, by_light, active, &direct);
-    active = roulette(scene, path, active, u);
+    active = interact(scene, path, &s, by_light, active, u.x, &direct);
+    active = roulette(scene, path, active, u.y);
 
     add_radiance(scene, path, visible_light(scene, direct));
     return active;

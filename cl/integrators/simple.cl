@@ -17,7 +17,7 @@ static mask simple_step(const Scene *scene, Path *path, Hit hit, mask active) {
     real distance2 = v3_dot(to_light, to_light);
     real cosine = v3_dot(s.frame.n, to_light) * rsqrt(distance2);
     active = active & (cosine > 0) & (distance2 > 0);
-    v3 start = leave_surface(s, to_light);
+    v3 start = leave_surface(&s, to_light);
     Ray ray = {start, v3_sub(light, start), (real)(0), (real)(1)};
     active = active & !any_hit(scene, ray, active);
     v3 energy = v3_from(scene->settings->light_energy);

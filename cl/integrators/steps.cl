@@ -55,7 +55,7 @@ static real mis_weight(const Scene *scene, real ratio) {
 
 // Radiance of the lights that the path's rays meet, where they hit the surface s or, in lanes without a hit, leave the
 // scene; times the MIS weight of meeting it by a BSDF sample. 0 in lanes that are not active.
-static v3 light_met(const Scene *scene, const Path *path, Surface s, mask hit, mask active) {
+static v3 light_met(const Scene *scene, const Path *path, const Surface *s, mask hit, mask active) {
     v3 none = v3_all((real)(0));
     if (MET_KINDS == 0) return none;
     mask met;
@@ -73,16 +73,16 @@ static v3 light_met(const Scene *scene, const Path *path, Surface s, mask hit, m
 
 // Samples one direction to one emitter as the light of surface s, before its BSDF is asked. Sets *wo to the direction
 // in the surface's frame. inverse_pdf includes the choice of the emitter.
-static LightSample sample_light(const Scene *scene, const Path *path, Surface s, mask active, v3 *wo) {
-    *wo = s.wi;
+static LightSample sample_light(const Scene *scene, const Path *path, const Surface *s, mask active, v3 *wo) {
+    *wo = s->wi;
     if (EMITTER_KINDS == 0 || !ANY(active)) return no_light_sample();
     ReferencePoint from = reference_point(s);
     EmitterChoice choice = emitter_choose(scene, from, path_draw_bits(scene, path, DIM_EMITTER));
     LightSample light = emitter_sample(scene, choice.id, from, path_draw(scene, path, DIM_LIGHT),
                                        path_draw_bits(scene, path, DIM_TRIANGLE), active);
-    *wo = to_local(s.frame, light.d);
+    *wo = to_local(s->frame, light.d);
     light.inverse_pdf = light.inverse_pdf / choice.probability;
-    light.active = light.active & bsdf_is_lit_from(scene, s.bsdf, *wo);
+    light.active = light.active & bsdf_is_lit_from(scene, s->bsdf, *wo);
     return light;
 }
 
@@ -94,7 +94,7 @@ typedef struct {
 } DirectLight;
 
 // Completes a light sample by what the BSDF answers for its direction wo, local.
-static DirectLight direct_light(const Scene *scene, const Path *path, Surface s, LightSample light, v3 wo,
+static DirectLight direct_light(const Scene *scene, const Path *path, const Surface *s, LightSample light, v3 wo,
                                 BsdfResponse bsdf) {
     real inverse_pdf = light.inverse_pdf;
     if (CHOSEN(scene, lighting, mis)) {
@@ -126,14 +126,14 @@ static v3 visible_light(const Scene *scene, DirectLight light) {
 #define THROUGHPUT_LEAST R(1.1754944e-38)
 
 // Sets the path's next segment to a sample of the BSDF. Returns the active lanes whose path still carries something.
-static mask scatter(const Scene *scene, Path *path, Surface s, BsdfSample sample, mask active) {
+static mask scatter(const Scene *scene, Path *path, const Surface *s, BsdfSample sample, mask active) {
     mask broken = active & !is_finite(sample.weight);
     if (ANY(broken)) { // the path ends, and the film counts it
         path->radiance = v3_pick(broken, sample.weight, path->radiance);
         active = active & !broken;
     }
     active = active & (v3_largest(sample.weight) > 0);
-    v3 d = to_world(s.frame, sample.wo);
+    v3 d = to_world(s->frame, sample.wo);
     path->ray.o = leave_surface(s, d);
     path->ray.d = d;
     path->ray.tmin = 0;
@@ -153,14 +153,15 @@ static mask scatter(const Scene *scene, Path *path, Surface s, BsdfSample sample
 }
 
 // What happens to the path at surface s: in the lanes of by_light a direction to a light is sampled, in those of
-// by_bsdf the next segment. The BSDF is asked once for both. Sets *direct, whose visibility is tested later, by
-// visible_light, so that a processor works at this and at the next segment at the same time. Returns the lanes of
-// by_bsdf whose path still carries something.
-static mask interact(const Scene *scene, Path *path, Surface s, mask by_light, mask by_bsdf, DirectLight *direct) {
+// by_bsdf the next segment. The BSDF is asked once for both; lobe: the first number of DIM_LOBE. Sets *direct, whose
+// visibility is tested later, by visible_light, so that a processor works at this and at the next segment at the same
+// time. Returns the lanes of by_bsdf whose path still carries something.
+static mask interact(const Scene *scene, Path *path, const Surface *s, mask by_light, mask by_bsdf, real lobe,
+                     DirectLight *direct) {
     v3 wo;
     LightSample light = sample_light(scene, path, s, by_light, &wo);
-    BsdfResponse bsdf = bsdf_respond(scene, s, wo, light.active, path_draw(scene, path, DIM_BSDF),
-                                     path_draw(scene, path, DIM_LOBE).x, by_bsdf);
+    v2 u = path_draw(scene, path, DIM_BSDF);
+    BsdfResponse bsdf = bsdf_respond(scene, s, wo, light.active, u, lobe, by_bsdf);
     *direct = direct_light(scene, path, s, light, wo, bsdf);
     return scatter(scene, path, s, bsdf.sample, by_bsdf);
 }

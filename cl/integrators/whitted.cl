@@ -15,15 +15,16 @@ static mask whitted_step(const Scene *scene, Path *path, Hit hit, mask active) {
     mask on_surface = active & is_hit(hit);
     if (ENVIRONMENT_KINDS == 0 && !ANY(on_surface)) return on_surface;
     Surface s = surface_at(scene, path->ray, hit, on_surface);
-    v3 met = light_met(scene, path, s, on_surface, active);
+    v3 met = light_met(scene, path, &s, on_surface, active);
     path->radiance = v3_add(path->radiance, v3_mul(path->throughput, met));
     active = on_surface & to_mask(path->depth < scene->settings->max_depth);
     bsdf_open(scene, &s, active);
     mask specular = active & bsdf_is_discrete(scene, s.bsdf);
-    Choice survives = choose((real)(WHITTED_SURVIVAL), path_draw(scene, path, DIM_LOBE).y);
+    v2 u = path_draw(scene, path, DIM_LOBE);
+    Choice survives = choose((real)(WHITTED_SURVIVAL), u.y);
     path->throughput = v3_scale(path->throughput, specular ? 1 / survives.probability : (real)(1));
     DirectLight direct;
-    mask followed = interact(scene, path, s, active & !specular, specular, &direct);
+    mask followed = interact(scene, path, &s, active & !specular, specular, u.x, &direct);
     path->radiance = v3_add(path->radiance, visible_light(scene, direct));
     return followed & survives.first;
 }

@@ -149,12 +149,12 @@ kernel void trace(SCENE_PARAMETERS, global const float *rays, global float *out,
     Surface s = surface_at(&scene, ray, hit, active);
     ReferencePoint from = {ray.o, v3_all((real)(0))};
     mask met;
-    uints id = emitter_met(&scene, s, active, ALL_LANES, &met);
+    uints id = emitter_met(&scene, &s, active, ALL_LANES, &met);
     v3 radiance = v3_all((real)(0));
     real density = 0;
     if (MET_KINDS > 0 && ANY(met)) {
-        radiance = emitter_radiance(&scene, id, ray.d, s, met);
-        density = emitter_pdf(&scene, id, from, ray.d, s, met) * emitter_probability(&scene, id, from);
+        radiance = emitter_radiance(&scene, id, ray.d, &s, met);
+        density = emitter_pdf(&scene, id, from, ray.d, &s, met) * emitter_probability(&scene, id, from);
     }
     put(out, HIT_T, stride, base, active ? s.t : hit.t);
     put(out, HIT_U, stride, base, s.u);

@@ -44,7 +44,7 @@ static Ray tiled_camera_ray(const Scene *scene, Sampler sampler, uints i) {
 }
 
 // A cosine-distributed ray into the hemisphere around `normal`.
-static Ray bounce_ray(const Scene *scene, Sampler sampler, Surface s, v3 normal) {
+static Ray bounce_ray(const Scene *scene, Sampler sampler, const Surface *s, v3 normal) {
     v3 d = to_world(frame_of(normal), square_to_cosine_hemisphere(draw(scene, sampler, (uints)(1 + DIM_BSDF))));
     Ray ray = {leave_surface(s, d), d, (real)(0), (real)(FAR)};
     return ray;
@@ -52,7 +52,8 @@ static Ray bounce_ray(const Scene *scene, Sampler sampler, Surface s, v3 normal)
 
 // A shadow ray to a light, as the integrators send it. Where there are no lights, it goes to a point of the box
 // lo + [0, 1]^3 size. Lanes whose light faces away leave *active.
-static Ray ray_to_light(const Scene *scene, Sampler sampler, Surface s, v3 normal, v3 lo, v3 size, mask *active) {
+static Ray ray_to_light(const Scene *scene, Sampler sampler, const Surface *s, v3 normal, v3 lo, v3 size,
+                        mask *active) {
     v2 point = draw(scene, sampler, (uints)(1 + DIM_LIGHT));
     u2 choice = draw_bits(scene, sampler, (uints)(1 + DIM_EMITTER));
     if (EMITTER_KINDS > 0) {
@@ -64,7 +65,7 @@ static Ray ray_to_light(const Scene *scene, Sampler sampler, Surface s, v3 norma
         return shadow_ray(s, light);
     }
     v3 end = v3_add(lo, v3_mul(size, v3_of(point.x, point.y, unit_real(choice.x))));
-    v3 start = leave_surface(s, v3_sub(end, s.p));
+    v3 start = leave_surface(s, v3_sub(end, s->p));
     Ray ray = {start, v3_sub(end, start), (real)(0), (real)(1)};
     return ray;
 }
@@ -87,8 +88,8 @@ kernel void generate(SCENE_PARAMETERS, uint kind, float lo_x, float lo_y, float 
         active = active & is_hit(hit);
         Surface s = surface_at(&scene, ray, hit, active);
         v3 normal = v3_scale(s.normal, copysign((real)(1), -v3_dot(s.normal, ray.d))); // on the side that is seen
-        if (kind == RAYS_bounce) ray = bounce_ray(&scene, sampler, s, normal);
-        else ray = ray_to_light(&scene, sampler, s, normal, v3_of((real)(lo_x), (real)(lo_y), (real)(lo_z)),
+        if (kind == RAYS_bounce) ray = bounce_ray(&scene, sampler, &s, normal);
+        else ray = ray_to_light(&scene, sampler, &s, normal, v3_of((real)(lo_x), (real)(lo_y), (real)(lo_z)),
                                 v3_of((real)(size_x), (real)(size_y), (real)(size_z)), &active);
     }
     put_ray(rays, stride, base, ray, active);

@@ -51,11 +51,12 @@ static BlockTest intersect_leaf(Leaf leaf, uint place, const LaneRay *ray) {
 
 // The surface that each active lane hit; the others get any that there is.
 static Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask active) {
+#define ONLY_SURFACE(name, Block) \
+    if (OPAL_HAS_shape_##name && SHAPE_KINDS == 1) return surface_of_##name(scene, ray, hit, active);
+    OPAL_SHAPES(ONLY_SURFACE)
     Surface s = no_surface();
-    if (!ANY(active)) return s; // the scene may have none
 #define SURFACE(name, Block) \
     if (OPAL_HAS_shape_##name) { \
-        if (SHAPE_KINDS == 1) return surface_of_##name(scene, ray, hit, active); \
         mask m = active & to_mask(hit.shape == SHAPE_##name); \
         if (ANY(m)) s = surface_pick(m, surface_of_##name(scene, ray, hit, m), s); \
     }
