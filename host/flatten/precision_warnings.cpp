@@ -79,6 +79,8 @@ private:
     }
 
     void check_bsdf(const Bsdf &bsdf, const SourcePlace &place) {
+        for (const Bsdf &child : bsdf.children)
+            check_bsdf(child, child.place.line ? child.place : place);
         switch (bsdf.kind()) {
         case BSDF_diffuse:
             return check(bsdf.as<bsdf_diffuse_record>(), place);

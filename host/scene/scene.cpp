@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace opal {
 
 std::string SourcePlace::text() const {
@@ -40,6 +42,11 @@ unsigned emitter_traits(unsigned kind) {
 #define OPAL_EMITTER_TRAITS(name, traits) traits,
     static const unsigned all[] = {OPAL_EMITTERS(OPAL_EMITTER_TRAITS)};
     return all[kind];
+}
+
+bool Bsdf::leads_to(uint wanted) const {
+    return kind() == wanted ||
+           std::any_of(children.begin(), children.end(), [&](const Bsdf &child) { return child.leads_to(wanted); });
 }
 
 const char *camera_name(unsigned kind) {

@@ -35,6 +35,7 @@ struct Bsdf {
 
     uint kind() const { return words[0]; } // BSDF_*
     unsigned traits() const;               // OPAL_SMOOTH and so on, as bits; those of its children where it has some
+    bool leads_to(uint kind) const;        // is of that kind, or a BSDF within it is
     template <class Record> bool is() const { return kind() == Record{}.kind; }
     template <class Record> Record as() const { return record_of<Record>(words); } // is<Record>() must hold
 };

@@ -49,7 +49,7 @@ public:
             const auto *triangles = std::get_if<TriangleMesh>(&mesh.shape);
             emitters += mesh.radiance.has_value();
             light_triangles_ = light_triangles_ || (mesh.radiance && triangles && triangles->triangles.size() > 1);
-            diffuse_ = diffuse_ || mesh.bsdf.kind() == BSDF_diffuse;
+            diffuse_ = diffuse_ || mesh.bsdf.leads_to(BSDF_diffuse);
             refracts_ = refracts_ || (mesh.bsdf.traits() & OPAL_TRANSMITS);
             mesh.shape = Parallelogram{};
         }

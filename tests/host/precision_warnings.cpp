@@ -52,6 +52,9 @@ TEST_CASE("An ordinary scene brings no warning", "[precision_warnings]") {
 TEST_CASE("What makes light from nothing, or nothing of light, is told with its line", "[precision_warnings]") {
     check_one(warnings_of(near, R"(<bsdf type="diffuse"><color name="albedo" value="0.5 1.1 0.5"/></bsdf>)"),
               "4:", "albedo 1.1 is above 1");
+    check_one(warnings_of(near, R"(<bsdf type="twosided"><bsdf type="diffuse"><color name="albedo" value="1.2 0 0"/>)"
+                                R"(</bsdf></bsdf>)"),
+              "4:", "albedo 1.2 is above 1");
     check_one(warnings_of(near, R"(<bsdf type="phong"><color name="kd" value="0.9 0.9 0.9"/>)"
                                 R"(<color name="ks" value="1.4 1.4 1.4"/></bsdf>)"),
               "4:", "reflect 1.15");
