@@ -8,13 +8,13 @@
 #include "scene.cl"
 #include "surface.cl"
 
-static LightSample emitter_constant_sample(const Scene *scene, uints id, ReferencePoint from, v2 u, u2 bits) {
-    v3 d = square_to_uniform_sphere(u), radiance = GATHER_V3(scene->emitters, id, .u.of_constant.radiance);
-    return light_sample_of(d, (real)(FAR), radiance, 1 / square_to_uniform_sphere_pdf(d), from.p, ALL_LANES);
+static LightSample emitter_constant_sample(const Scene *scene, uints id, v3 color, ReferencePoint from, v2 u, u2 bits) {
+    v3 d = square_to_uniform_sphere(u);
+    return light_sample_of(d, (real)(FAR), color, 1 / square_to_uniform_sphere_pdf(d), from.p, ALL_LANES);
 }
 
-static v3 emitter_constant_radiance(const Scene *scene, uints id, v3 d, const Surface *s) {
-    return GATHER_V3(scene->emitters, id, .u.of_constant.radiance);
+static v3 emitter_constant_radiance(const Scene *scene, uints id, v3 color, v3 d, const Surface *s) {
+    return color;
 }
 
 static real emitter_constant_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, const Surface *s) {

@@ -33,12 +33,13 @@ static mask emitter_lanes(uints kind, uint wanted, int kinds, mask active) {
 // A direction from `from` to the emitters `id`, by random numbers u in [0, 1) and random words `bits`.
 static LightSample emitter_sample(const Scene *scene, uints id, ReferencePoint from, v2 u, u2 bits, mask active) {
     LightSample sample = no_light_sample();
+    v3 color = GATHER_V3(scene->emitters, id, .u.color);
     uints kind = emitter_kind(scene, id);
 #define SAMPLE_EMITTER(name, traits) \
     if (OPAL_HAS_emitter_##name) { \
         mask m = emitter_lanes(kind, EMITTER_##name, EMITTER_KINDS, active); \
         if (ANY(m)) { \
-            LightSample s = emitter_##name##_sample(scene, id, from, u, bits); \
+            LightSample s = emitter_##name##_sample(scene, id, color, from, u, bits); \
             s.active = s.active & m; \
             s.discrete = ((traits) & OPAL_DELTA) != 0 ? ALL_LANES : NO_LANES; \
             s.infinite = ((traits) & OPAL_INFINITE) != 0 ? ALL_LANES : NO_LANES; \
@@ -53,12 +54,12 @@ static LightSample emitter_sample(const Scene *scene, uints id, ReferencePoint f
 // Radiance of the emitters `id`, W / (m^2 sr), that rays of direction d find: where they met the surface s, or where
 // they left the scene. 0 in lanes that are not active.
 static v3 emitter_radiance(const Scene *scene, uints id, v3 d, const Surface *s, mask active) {
-    v3 radiance = v3_all((real)(0));
+    v3 radiance = v3_all((real)(0)), color = GATHER_V3(scene->emitters, id, .u.color);
     uints kind = emitter_kind(scene, id);
 #define RADIANCE_OF_EMITTER(name, traits) \
     if (OPAL_HAS_emitter_##name && OPAL_CAN_BE_MET(traits)) { \
         mask m = emitter_lanes(kind, EMITTER_##name, MET_KINDS, active); \
-        if (ANY(m)) radiance = v3_pick(m, emitter_##name##_radiance(scene, id, d, s), radiance); \
+        if (ANY(m)) radiance = v3_pick(m, emitter_##name##_radiance(scene, id, color, d, s), radiance); \
     }
     OPAL_EMITTERS(RADIANCE_OF_EMITTER)
     return radiance;

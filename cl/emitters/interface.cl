@@ -1,13 +1,14 @@
 // interface: what every emitter offers (emitters/NAME.cl for each row of emitters/list.h), one a lane.
-//   LightSample emitter_NAME_sample(scene, id, from, u, bits)
+//   LightSample emitter_NAME_sample(scene, id, color, from, u, bits)
 //                                          a direction from `from` to the emitters `id`
-//   v3   emitter_NAME_radiance(scene, id, d, s)
+//   v3   emitter_NAME_radiance(scene, id, color, d, s)
 //                                          radiance that a ray of direction d (unit) finds; 0 for delta lights
 //   real emitter_NAME_pdf(scene, id, from, d, s)
 //                                          density of _sample at d, solid angle measure, 1/sr; 0 for delta lights
-// u: a pair of random numbers in [0, 1); bits: a pair of random words, for choices among many. s: the surface that the
-// ray met; of lights that are infinitely far nothing.
-// Functions compute all lanes; their callers pick those that are meant.
+// color: that of the record. u: a pair of random numbers in [0, 1); bits: a pair of random words, for choices among
+// many. s: the surface that the ray met; of lights that are infinitely far nothing.
+// Functions compute all lanes; their callers pick those that are meant, but all lanes of a LightSample are finite.
+// _radiance and _pdf of delta lights are never called.
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "scene.cl"

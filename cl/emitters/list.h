@@ -44,15 +44,16 @@ namespace opal {
 
 #define OPAL_ALIAS_ROWS 0x100000u // an alias table of more rows is drawn from by 32 bits, others by 24
 
-// The records of the kinds. Positions and areas are in the flattened scene's units (FlatScene::center,
-// FlatScene::scale); radiance in W / (m^2 sr).
+// The records of the kinds. All begin with a colour: the radiance, W / (m^2 sr), or of a delta light the intensity,
+// W / sr, times FlatScene::scale^2. Positions and areas are in the flattened scene's units (FlatScene::center,
+// FlatScene::scale).
 typedef struct {
-    float radiance[3];
+    float color[3];
     uint first_triangle;  // index of the first of its triangles, whose rows follow their order
 } emitter_mesh_record;
 
 typedef struct {
-    float radiance[3];
+    float color[3];
     float origin[3];      // a corner
     float u[3], v[3];     // the edges from there
     float normal[3];      // u x v, unit; it emits on that side
@@ -60,12 +61,12 @@ typedef struct {
 } emitter_parallelogram_record;
 
 typedef struct {
+    float color[3];
     float position[3];
-    float intensity[3];   // W / sr, times FlatScene::scale^2
 } emitter_point_record;
 
 typedef struct {
-    float radiance[3];
+    float color[3];
 } emitter_constant_record;
 
 // One emitter. Lanes read the record of a kind from emitters of another kind too, and drop what they read: a member
@@ -78,6 +79,7 @@ typedef struct {
     uint other;
     uint first, count;    // its rows of a table; of a mesh, of the light triangles. Others: 0, 0
     union {
+        float color[3];   // with which every record begins
         OPAL_EMITTERS(OPAL_EMITTER_MEMBER)
     } u;
 } EmitterRecord;

@@ -10,7 +10,7 @@
 #include "shapes/triangle.cl"
 #include "surface.cl"
 
-static LightSample emitter_mesh_sample(const Scene *scene, uints id, ReferencePoint from, v2 u, u2 bits) {
+static LightSample emitter_mesh_sample(const Scene *scene, uints id, v3 color, ReferencePoint from, v2 u, u2 bits) {
     uints first = GATHER(uints, scene->emitters, id, .first), count = GATHER(uints, scene->emitters, id, .count), row;
     ALIAS_ENTRY(scene, light_triangles, first, count, bits, row)
     uints slot = GATHER(uints, scene->light_triangles, row, .slot);
@@ -23,12 +23,11 @@ static LightSample emitter_mesh_sample(const Scene *scene, uints id, ReferencePo
     v3 normal = v3_normalize(v3_cross(e1, e2));
     v3 shading = shading_normal(scene, corner_normals(scene, triangle_id(scene, slot)), b1, b2, normal);
     return sample_of_point(from, v3_mad(e1, b1, v3_mad(e2, b2, p0)), normal, shading,
-                           GATHER(real, scene->light_triangles, row, .inverse_pdf), ray_offset_of(p0, p1, p2),
-                           GATHER_V3(scene->emitters, id, .u.of_mesh.radiance));
+                           GATHER(real, scene->light_triangles, row, .inverse_pdf), ray_offset_of(p0, p1, p2), color);
 }
 
-static v3 emitter_mesh_radiance(const Scene *scene, uints id, v3 d, const Surface *s) {
-    return GATHER_V3(scene->emitters, id, .u.of_mesh.radiance);
+static v3 emitter_mesh_radiance(const Scene *scene, uints id, v3 color, v3 d, const Surface *s) {
+    return color;
 }
 
 static real emitter_mesh_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, const Surface *s) {

@@ -7,19 +7,19 @@
 #include "scene.cl"
 #include "surface.cl"
 
-static LightSample emitter_parallelogram_sample(const Scene *scene, uints id, ReferencePoint from, v2 u, u2 bits) {
+static LightSample emitter_parallelogram_sample(const Scene *scene, uints id, v3 color, ReferencePoint from, v2 u,
+                                                u2 bits) {
     v3 corner = GATHER_V3(scene->emitters, id, .u.of_parallelogram.origin);
     v3 e1 = GATHER_V3(scene->emitters, id, .u.of_parallelogram.u);
     v3 e2 = GATHER_V3(scene->emitters, id, .u.of_parallelogram.v);
     v3 normal = GATHER_V3(scene->emitters, id, .u.of_parallelogram.normal);
     real offset = ray_offset_of(corner, v3_add(corner, v3_add(e1, e2)), v3_add(corner, e1));
     return sample_of_point(from, v3_mad(e1, u.x, v3_mad(e2, u.y, corner)), normal, normal,
-                           GATHER(real, scene->emitters, id, .u.of_parallelogram.area), offset,
-                           GATHER_V3(scene->emitters, id, .u.of_parallelogram.radiance));
+                           GATHER(real, scene->emitters, id, .u.of_parallelogram.area), offset, color);
 }
 
-static v3 emitter_parallelogram_radiance(const Scene *scene, uints id, v3 d, const Surface *s) {
-    return GATHER_V3(scene->emitters, id, .u.of_parallelogram.radiance);
+static v3 emitter_parallelogram_radiance(const Scene *scene, uints id, v3 color, v3 d, const Surface *s) {
+    return color;
 }
 
 static real emitter_parallelogram_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, const Surface *s) {

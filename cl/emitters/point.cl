@@ -7,15 +7,16 @@
 #include "scene.cl"
 #include "surface.cl"
 
-static LightSample emitter_point_sample(const Scene *scene, uints id, ReferencePoint from, v2 u, u2 bits) {
+static LightSample emitter_point_sample(const Scene *scene, uints id, v3 color, ReferencePoint from, v2 u, u2 bits) {
     v3 p = GATHER_V3(scene->emitters, id, .u.of_point.position), to_light = v3_sub(p, from.p);
     real distance2 = v3_dot(to_light, to_light), inverse_distance = rsqrt(distance2);
-    v3 intensity = GATHER_V3(scene->emitters, id, .u.of_point.intensity);
     return light_sample_of(v3_scale(to_light, inverse_distance), distance2 * inverse_distance,
-                           v3_scale(intensity, square(inverse_distance)), (real)(1), p, inverse_distance < FAR);
+                           v3_scale(color, square(inverse_distance)), (real)(1), p, inverse_distance < FAR);
 }
 
-static v3 emitter_point_radiance(const Scene *scene, uints id, v3 d, const Surface *s) { return v3_all((real)(0)); }
+static v3 emitter_point_radiance(const Scene *scene, uints id, v3 color, v3 d, const Surface *s) {
+    return v3_all((real)(0));
+}
 
 static real emitter_point_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, const Surface *s) {
     return (real)(0);

@@ -16,7 +16,7 @@ double power_of(const emitter_constant &light, double radius) {
 
 emitter_constant_record flattened(const emitter_constant &light, const Flattening &) {
     emitter_constant_record record{};
-    store(light.radiance, 1, record.radiance);
+    store(light.radiance, 1, record.color);
     return record;
 }
 

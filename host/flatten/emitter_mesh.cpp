@@ -13,7 +13,7 @@ double flatten_mesh(const EmittingMesh &from, EmitterRecord &record, FlatScene &
         areas.push_back(0.5 * length(normal_of(from.soup.vertices[a], from.soup.vertices[b], from.soup.vertices[c])));
         area += areas.back();
     }
-    store(*from.mesh.radiance, 1, record.u.of_mesh.radiance);
+    store(*from.mesh.radiance, 1, record.u.of_mesh.color);
     record.u.of_mesh.first_triangle = from.begin;
     record.first = uint(scene.light_triangles.size());
     record.count = from.end - from.begin;

@@ -17,7 +17,7 @@ double flatten_parallelogram(const EmittingMesh &from, EmitterRecord &record, Fl
     const Vec3 normal = normal_of(vertices[o], vertices[u], vertices[v]);
     const double area = length(normal);
     store(normal * (1 / area), own.normal);
-    store(*from.mesh.radiance, 1, own.radiance);
+    store(*from.mesh.radiance, 1, own.color);
     own.area = float(area);
     return area;
 }

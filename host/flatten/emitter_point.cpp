@@ -13,7 +13,7 @@ double power_of(const emitter_point &light, double) { return luminance(light.pow
 emitter_point_record flattened(const emitter_point &light, const Flattening &flattening) {
     emitter_point_record record{};
     store((light.position - flattening.center) * flattening.scale, record.position);
-    store(light.power, flattening.scale * flattening.scale / (4 * std::numbers::pi), record.intensity);
+    store(light.power, flattening.scale * flattening.scale / (4 * std::numbers::pi), record.color);
     return record;
 }
 

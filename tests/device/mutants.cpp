@@ -228,7 +228,7 @@ const std::vector<Control> densities = {
       "v3 d = square_to_uniform_hemisphere(u)"},
      "emitters",
      check_emitters},
-    {{"a point light by the distance", "emitters/point.cl", "v3_scale(intensity, square(inverse_distance))",
+    {{"a point light by the distance", "emitters/point.cl", "v3_scale(color, square(inverse_distance))",
       "v3_scale(intensity, inverse_distance)"},
      "emitters",
      check_emitters},

@@ -67,7 +67,7 @@ TEST_CASE("emitters of each kind, in the flattened units", "[emitters]") {
         const EmitterRecord &mesh = scene.emitters[0], &quad = scene.emitters[1], &point = scene.emitters[2];
 
         CHECK((mesh.kind == EMITTER_mesh && mesh.first == 0 && mesh.count == 2));
-        CHECK((mesh.u.of_mesh.radiance[0] == 1 && mesh.u.of_mesh.radiance[2] == 3));
+        CHECK((mesh.u.of_mesh.color[0] == 1 && mesh.u.of_mesh.color[2] == 3));
         const uint first = mesh.u.of_mesh.first_triangle;
         CHECK((scene.triangles[first].mesh == 1 && scene.triangles[first + 1].mesh == 1));
         CHECK(area_of(scene, scene.light_triangles[0].slot) == Approx(8. / 64)); // each row leads to its own triangle
@@ -83,7 +83,7 @@ TEST_CASE("emitters of each kind, in the flattened units", "[emitters]") {
         CHECK(point.kind == EMITTER_point);
         CHECK(point.u.of_point.position[0] == 0.5f);
         // Intensity over squared distance is the same in both units.
-        CHECK(point.u.of_point.intensity[0] / (0.5 * 0.5) == Approx(100 / (4 * pi) / (4. * 4.)));
+        CHECK(point.u.of_point.color[0] / (0.5 * 0.5) == Approx(100 / (4 * pi) / (4. * 4.)));
 
         const double powers[] = {pi * luminance(bright) * 10, pi * luminance(bright) * 6, luminance(power)};
         const double all = powers[0] + powers[1] + powers[2];
@@ -117,7 +117,7 @@ TEST_CASE("an environment sheds its power on the scene's bounding sphere, and th
     const FlatScene scene = flatten(description, 8);
     REQUIRE(scene.emitters.size() == 2);
     CHECK(scene.settings.environment == 1);
-    CHECK((scene.emitters[1].kind == EMITTER_constant && scene.emitters[1].u.of_constant.radiance[2] == 3));
+    CHECK((scene.emitters[1].kind == EMITTER_constant && scene.emitters[1].u.of_constant.color[2] == 3));
     const double sky = pi * luminance(bright) * 4 * pi * 128; // radius 8 sqrt(2)
     CHECK(scene.emitters[1].probability == Approx(sky / (sky + luminance(power))));
 

@@ -69,8 +69,8 @@ TEST_CASE("All sensible strategies of a right renderer agree", "[verify][stat]")
 
 TEST_CASE("A bias of 2 % in one strategy is found, and the strategy is named", "[verify][stat]") {
     const SceneFolder folder;
-    const Mutant mutant{"uniform sampling 2 % too bright", "bsdfs/diffuse.cl", "b.use_cosine ? (real)(1) : 2 * wo.z",
-                        "b.use_cosine ? (real)(1) : R(2.04) * wo.z"};
+    const Mutant mutant{"uniform sampling 2 % too bright", "bsdfs/diffuse.cl", "by_cosine ? (real)(1) : 2 * wo.z",
+                        "by_cosine ? (real)(1) : R(2.04) * wo.z"};
     const Outcome outcome =
         folder.verify("--budget 20s --strategies 'lighting=bsdf,hemisphere=cosine; lighting=bsdf,hemisphere=uniform; "
                       "lighting=emitter'" +

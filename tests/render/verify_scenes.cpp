@@ -18,9 +18,9 @@ const std::string heuristic = "1 / (1 + (CHOSEN(scene, mis, power) ? ratio * rat
 const std::vector<Mutant> planted = {
     {"light samples", "integrators/steps.cl", "light.radiance), fabs(wo.z) * inverse_pdf",
      "light.radiance), R(1.02) * fabs(wo.z) * inverse_pdf"},
-    {"uniform directions", "bsdfs/diffuse.cl", "b.use_cosine ? (real)(1) : 2 * wo.z",
-     "b.use_cosine ? (real)(1) : R(2.04) * wo.z"},
-    {"cosine directions", "bsdfs/diffuse.cl", "b.use_cosine ? (real)(1) : 2 * wo.z",
+    {"uniform directions", "bsdfs/diffuse.cl", "by_cosine ? (real)(1) : 2 * wo.z",
+     "by_cosine ? (real)(1) : R(2.04) * wo.z"},
+    {"cosine directions", "bsdfs/diffuse.cl", "by_cosine ? (real)(1) : 2 * wo.z",
      "b.use_cosine ? (real)(R(1.02)) : 2 * wo.z"},
     {"the balance heuristic", "integrators/steps.cl", heuristic,
      "(CHOSEN(scene, mis, power) ? (real)(1) : (real)(R(1.02))) * " + heuristic},
