@@ -12,6 +12,7 @@
 
 static mask ao_step(const Scene *scene, Path *path, Hit hit, mask active) {
     active = active & is_hit(hit);
+    if (!ANY(active)) return active;
     Surface s = surface_at(scene, path->ray, hit, active);
     v2 u = path_draw(scene, path, DIM_BSDF);
     int cosine = CHOSEN(scene, hemisphere, cosine);

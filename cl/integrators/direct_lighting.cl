@@ -9,14 +9,13 @@
 #include "emitters/dispatch.cl"
 #include "integrators/steps.cl"
 #include "scene.cl"
-#include "shapes/dispatch.cl"
 #include "shared/types.h"
 #include "surface.cl"
 
 static mask direct_lighting_step(const Scene *scene, Path *path, Hit hit, mask active) {
     mask on_surface = active & is_hit(hit);
     if (ENVIRONMENT_KINDS == 0 && !ANY(on_surface)) return on_surface;
-    Surface s = surface_at(scene, path->ray, hit, on_surface);
+    Surface s = surface_met(scene, path, hit, on_surface);
     v3 met = light_met(scene, path, &s, on_surface, active);
     path->radiance = v3_add(path->radiance, v3_mul(path->throughput, met));
 

@@ -7,6 +7,7 @@
 
 static mask normals_step(const Scene *scene, Path *path, Hit hit, mask active) {
     active = active & is_hit(hit);
+    if (!ANY(active)) return active;
     v3 n = surface_at(scene, path->ray, hit, active).frame.n;
     v3 color = scene->settings->normals_signed ? v3_mad(n, (real)(R(0.5)), v3_all((real)(R(0.5)))) : v3_abs(n);
     path->radiance = v3_pick(active, color, path->radiance);

@@ -7,13 +7,12 @@
 #include "emitters/dispatch.cl"
 #include "integrators/steps.cl"
 #include "scene.cl"
-#include "shapes/dispatch.cl"
 #include "surface.cl"
 
 static mask path_step(const Scene *scene, Path *path, Hit hit, mask active) {
     mask on_surface = active & is_hit(hit);
     if (ENVIRONMENT_KINDS == 0 && !ANY(on_surface)) return on_surface;
-    Surface s = surface_at(scene, path->ray, hit, on_surface);
+    Surface s = surface_met(scene, path, hit, on_surface);
 
     // Light that the ray meets
     add_radiance(scene, path, v3_mul(path->throughput, light_met(scene, path, &s, on_surface, active)));

@@ -11,6 +11,7 @@
 
 static mask simple_step(const Scene *scene, Path *path, Hit hit, mask active) {
     active = active & is_hit(hit);
+    if (!ANY(active)) return active;
     Surface s = surface_at(scene, path->ray, hit, active);
     v3 light = v3_from(scene->settings->light_position);
     v3 to_light = v3_sub(light, s.p);

@@ -9,6 +9,7 @@
 #include "emitters/dispatch.cl"
 #include "emitters/interface.cl"
 #include "scene.cl"
+#include "shapes/dispatch.cl"
 #include "shared/counters.h"
 #include "shared/types.h"
 #include "surface.cl"
@@ -51,6 +52,12 @@ static void add_radiance(const Scene *scene, Path *path, v3 light) {
 // survives densities that are 0 or overflow.
 static real mis_weight(const Scene *scene, real ratio) {
     return 1 / (1 + (CHOSEN(scene, mis, power) ? ratio * ratio : ratio));
+}
+
+// The surface that each lane of on_surface hit.
+static Surface surface_met(const Scene *scene, const Path *path, Hit hit, mask on_surface) {
+    if (ENVIRONMENT_KINDS > 0 && !ANY(on_surface)) return no_surface();
+    return surface_at(scene, path->ray, hit, on_surface);
 }
 
 // Radiance of the lights that the path's rays meet, where they hit the surface s or, in lanes without a hit, leave the

@@ -6,7 +6,6 @@
 #include "emitters/dispatch.cl"
 #include "integrators/steps.cl"
 #include "scene.cl"
-#include "shapes/dispatch.cl"
 #include "surface.cl"
 
 #define WHITTED_SURVIVAL R(0.95)
@@ -14,7 +13,7 @@
 static mask whitted_step(const Scene *scene, Path *path, Hit hit, mask active) {
     mask on_surface = active & is_hit(hit);
     if (ENVIRONMENT_KINDS == 0 && !ANY(on_surface)) return on_surface;
-    Surface s = surface_at(scene, path->ray, hit, on_surface);
+    Surface s = surface_met(scene, path, hit, on_surface);
     v3 met = light_met(scene, path, &s, on_surface, active);
     path->radiance = v3_add(path->radiance, v3_mul(path->throughput, met));
     active = on_surface & to_mask(path->depth < scene->settings->max_depth);

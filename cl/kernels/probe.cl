@@ -146,7 +146,8 @@ kernel void trace(SCENE_PARAMETERS, global const float *rays, global float *out,
                get(rays, RAY_TMIN, stride, base), get(rays, RAY_TMAX, stride, base)};
     Hit hit = closest_hit(&scene, ray, ALL_LANES);
     mask active = is_hit(hit);
-    Surface s = surface_at(&scene, ray, hit, active);
+    Surface s = no_surface();
+    if (ANY(active)) s = surface_at(&scene, ray, hit, active);
     ReferencePoint from = {ray.o, v3_all((real)(0))};
     mask met;
     uints id = emitter_met(&scene, &s, active, ALL_LANES, &met);

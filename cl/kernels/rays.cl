@@ -86,7 +86,8 @@ kernel void generate(SCENE_PARAMETERS, uint kind, float lo_x, float lo_y, float 
     if (kind != RAYS_camera) {
         Hit hit = closest_hit(&scene, ray, active);
         active = active & is_hit(hit);
-        Surface s = surface_at(&scene, ray, hit, active);
+        Surface s = no_surface();
+        if (ANY(active)) s = surface_at(&scene, ray, hit, active);
         v3 normal = v3_scale(s.normal, copysign((real)(1), -v3_dot(s.normal, ray.d))); // on the side that is seen
         if (kind == RAYS_bounce) ray = bounce_ray(&scene, sampler, &s, normal);
         else ray = ray_to_light(&scene, sampler, &s, normal, v3_of((real)(lo_x), (real)(lo_y), (real)(lo_z)),
@@ -116,7 +117,8 @@ kernel void closest_hits(SCENE_PARAMETERS, global const float *rays, global floa
         Ray ray = get_ray(rays, stride, base);
         Hit hit = closest_hit(&scene, ray, active);
         mask active_hit = is_hit(hit) & active;
-        Surface s = surface_at(&scene, ray, hit, active_hit);
+        Surface s = no_surface();
+        if (ANY(active_hit)) s = surface_at(&scene, ray, hit, active_hit);
         put(hits, TRACE_T, stride, base, active_hit ? s.t : hit.t);
         put(hits, TRACE_U, stride, base, s.u);
         put(hits, TRACE_V, stride, base, s.v);

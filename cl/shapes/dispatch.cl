@@ -49,7 +49,8 @@ static BlockTest intersect_leaf(Leaf leaf, uint place, const LaneRay *ray) {
     return none;
 }
 
-// The surface that each active lane hit; the others get any that there is.
+// The surface that each active lane hit, of which there is one at least: a scene may have no surfaces. The others get
+// any that there is.
 static Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask active) {
 #define ONLY_SURFACE(name, Block) \
     if (OPAL_HAS_shape_##name && SHAPE_KINDS == 1) return surface_of_##name(scene, ray, hit, active);
