@@ -54,10 +54,10 @@ typedef struct {
 } Starts;
 
 static void prepare_starts(const Scene *scene, Queue queue, Starts *starts) {
+    CameraPaths none = {{0}};
     starts->queue = queue;
-    starts->next = 0;
-    starts->end = start_paths(scene, &starts->queue, &starts->ready);
-    starts->taken = starts->ready;
+    starts->next = starts->end = 0; // refill starts the first ones: here their code would be compiled once more
+    starts->taken = none;
 }
 
 // Hands the ended lanes, a bit each, the next camera paths, as far as there are any. Returns the lanes that got one.
