@@ -32,7 +32,6 @@ static mask bsdf_lanes(uints kind, uint wanted) {
     return to_mask(kind == wanted);
 }
 
-
 // Sets the surface's BSDF, frame and wi to those of the BSDF that nested ones lead to. The functions below are asked
 // after that.
 static void bsdf_open(const Scene *scene, Surface *s, mask active) {
