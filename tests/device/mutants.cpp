@@ -229,7 +229,7 @@ const std::vector<Control> densities = {
      "emitters",
      check_emitters},
     {{"a point light by the distance", "emitters/point.cl", "v3_scale(color, square(inverse_distance))",
-      "v3_scale(intensity, inverse_distance)"},
+      "v3_scale(color, inverse_distance)"},
      "emitters",
      check_emitters},
     {{"a density of the wrong emitter", "emitters/choice.cl", "emitter_probability(scene, choice.id, from)",
