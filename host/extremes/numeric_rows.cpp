@@ -105,11 +105,11 @@ NumericResult measure_numbers(double u, const Device &device, const StressSettin
         for (size_t i = 0; i < density.count; i++) // up to 1 / alpha^2: not compared, but it must be a density
             comparison.add(0, 0, std::isfinite(density.at(0, i)) && density.at(0, i) >= 0, true);
     }
-    for (unsigned bsdf = 0; bsdf < single.scene().bsdfs.size(); bsdf++)
+    for (unsigned mesh = 0; mesh < single.scene().meshes.size(); mesh++)
         for (const double degrees : {0.0, 45.0, 89.999}) {
             const double angle = degrees * (std::numbers::pi / 180);
             const Vec3 wi = {std::sin(angle), 0, std::cos(angle)};
-            const Planes a = single.bsdf_sample(bsdf, wi, numbers), b = oracle.bsdf_sample(bsdf, wi, numbers);
+            const Planes a = single.bsdf_sample(mesh, wi, numbers), b = oracle.bsdf_sample(mesh, wi, numbers);
             comparison.add_vectors(a, b, BSDF_WO_X);
             comparison.add_vectors(a, b, BSDF_WEIGHT_R);
         }
