@@ -79,6 +79,14 @@ const WarpCase warp_cases[] = {{WARP_tent, 0},
                                {WARP_phong_lobe, 100},
                                {WARP_phong_lobe, 1e8f}};
 
+// BSDF samples with the factor of radiance as their weight, as paths have it (cl/integrators/steps.cl).
+Planes of_radiance(Planes drawn) {
+    for (size_t i = 0; i < drawn.count; i++)
+        for (size_t channel = 0; channel < 3; channel++)
+            drawn.at(BSDF_WEIGHT_R + channel, i) /= drawn.at(BSDF_ETA, i) * drawn.at(BSDF_ETA, i);
+    return drawn;
+}
+
 // A scene with every BSDF, a mesh light and a parallelogram light.
 FlatScene scene_of_everything() {
     SceneDescription scene = room();
@@ -109,7 +117,8 @@ NumericResult measure_numbers(double u, const Device &device, const StressSettin
         for (const double degrees : {0.0, 45.0, 89.999}) {
             const double angle = degrees * (std::numbers::pi / 180);
             const Vec3 wi = {std::sin(angle), 0, std::cos(angle)};
-            const Planes a = single.bsdf_sample(mesh, wi, numbers), b = oracle.bsdf_sample(mesh, wi, numbers);
+            const Planes a = of_radiance(single.bsdf_sample(mesh, wi, numbers)),
+                         b = of_radiance(oracle.bsdf_sample(mesh, wi, numbers));
             comparison.add_vectors(a, b, BSDF_WO_X);
             comparison.add_vectors(a, b, BSDF_WEIGHT_R);
         }

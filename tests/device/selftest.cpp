@@ -54,8 +54,7 @@ TEST_CASE("What computes wrong is found", "[selftest][stat]") {
         {"lights", "emitters/mesh.cl", "folded ? 1 - u.x", "folded ? u.x", "lights: directions"},
         {"lights", "emitters/point.cl", "square(inverse_distance)), (real)(1)",
          "square(inverse_distance)), (real)(0.5f)", "lights: samples of delta lights"},
-        {"lights", "emitters/point.cl", "v3_scale(color, square", "v3_scale(color, R(1.1) * square",
-         "lights: power"},
+        {"lights", "emitters/point.cl", "v3_scale(color, square", "v3_scale(color, R(1.1) * square", "lights: power"},
         {"rays", "trace/one_lane/walk.cl", "near_x = inverse.x < 0", "near_x = inverse.x > 0", "tree: hits", true},
         {"images", "integrators/steps.cl", "fabs(wo.z) * inverse_pdf", "inverse_pdf", "furnace"},
     };
