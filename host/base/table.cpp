@@ -29,6 +29,11 @@ size_t edit_distance(std::string_view a, std::string_view b) {
 
 } // namespace
 
+std::string with_hyphens(std::string name) {
+    std::replace(name.begin(), name.end(), '_', '-');
+    return name;
+}
+
 std::string joined(const std::vector<std::string> &names) {
     std::string text;
     for (const std::string &name : names)

@@ -14,6 +14,8 @@ namespace opal {
 // The known name nearest by edit distance (Levenshtein 1966), or "" where none is near enough to be a slip of the pen.
 std::string nearest_name(std::string_view name, const std::vector<std::string> &known);
 
+std::string with_hyphens(std::string name); // as the command line spells it: "int_ior" -> "int-ior"
+
 std::string joined(const std::vector<std::string> &names); // "a, b, c"; "none" for no names
 
 // The sentence for an unknown name. what: its kind ("bsdf", "property"); of: its owner (" of <mesh>").

@@ -95,11 +95,11 @@ private:
         stats::Moments weights;
         draw_in_batches(probe, size_t(test_.sample_count), options_.seed + unsigned(done_.size()),
                         [&](const Planes &numbers) {
-                            const Planes drawn = probe.bsdf_sample(id, direction_at(angle), numbers);
+                            // Nori's weights are those of radiance.
+                            const Planes drawn = of_radiance(probe.bsdf_sample(id, direction_at(angle), numbers));
                             for (size_t i = 0; i < drawn.count; i++) {
                                 const Vec3 w = drawn.vec3(BSDF_WEIGHT_R, i);
-                                const double eta = drawn.at(BSDF_ETA, i); // Nori's weights are those of radiance
-                                weights.add(luminance({w.x, w.y, w.z}) / (eta * eta));
+                                weights.add(luminance({w.x, w.y, w.z}));
                             }
                         });
         judge_mean(fmt::format("{} at {:g} degrees", bsdf_name(test_.bsdfs[id].kind()), angle), weights.sample(), "");

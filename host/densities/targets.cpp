@@ -52,11 +52,6 @@ Target open_warp(int warp, const Parameters &parameters, const Device &device, c
     return target;
 }
 
-std::string with_hyphens(std::string name) {
-    std::replace(name.begin(), name.end(), '_', '-');
-    return name;
-}
-
 // Some value, for a parameter that is required.
 std::string example_value(ParameterType type) {
     switch (type) {
@@ -218,16 +213,17 @@ std::vector<TargetParameter> all_parameters() {
     for (int warp = 0; warp < WARP_COUNT; warp++)
         if (const auto &[parameter, otherwise] = warp_defaults[warp]; *parameter)
             add_meaning(all, parameter, warp_name(warp), fmt::format("above 0 [{:g}]", otherwise));
+    const auto add_rows = [&](const char *owner, std::span<const Parameter> rows) {
+        for (const Parameter &p : rows)
+            add_meaning(all, with_hyphens(p.name), owner,
+                        fmt::format("{}, {} [{}]", p.meaning, text_of(p), text_of_initial(p)));
+    };
     for (uint kind = 0; kind < BSDF_COUNT; kind++)
         if (bsdf_traits(kind) & OPAL_SMOOTH)
-            for (const Parameter &p : bsdf_parameters(kind))
-                add_meaning(all, with_hyphens(p.name), bsdf_name(kind),
-                            fmt::format("{}, {} [{}]", p.meaning, text_of(p), text_of_initial(p)));
+            add_rows(bsdf_name(kind), bsdf_parameters(kind));
     for (uint kind = 0; kind < EMITTER_COUNT; kind++)
         if (is_light_target(kind))
-            for (const Parameter &p : emitter_parameters(kind))
-                add_meaning(all, with_hyphens(p.name), emitter_name(kind),
-                            fmt::format("{}, {} [{}]", p.meaning, text_of(p), text_of_initial(p)));
+            add_rows(emitter_name(kind), emitter_parameters(kind));
     return all;
 }
 

@@ -79,14 +79,6 @@ const WarpCase warp_cases[] = {{WARP_tent, 0},
                                {WARP_phong_lobe, 100},
                                {WARP_phong_lobe, 1e8f}};
 
-// BSDF samples with the factor of radiance as their weight, as paths have it (cl/integrators/steps.cl).
-Planes of_radiance(Planes drawn) {
-    for (size_t i = 0; i < drawn.count; i++)
-        for (size_t channel = 0; channel < 3; channel++)
-            drawn.at(BSDF_WEIGHT_R + channel, i) /= drawn.at(BSDF_ETA, i) * drawn.at(BSDF_ETA, i);
-    return drawn;
-}
-
 // A scene with every BSDF, a mesh light and a parallelogram light.
 FlatScene scene_of_everything() {
     SceneDescription scene = room();

@@ -29,6 +29,13 @@ Planes planes_of(std::span<const Vec3> points) {
     return planes;
 }
 
+Planes of_radiance(Planes drawn) {
+    for (size_t i = 0; i < drawn.count; i++)
+        for (size_t channel = 0; channel < 3; channel++)
+            drawn.at(BSDF_WEIGHT_R + channel, i) /= drawn.at(BSDF_ETA, i) * drawn.at(BSDF_ETA, i);
+    return drawn;
+}
+
 Planes corner_numbers() {
     constexpr float values[] = {0, 0x1p-24f, 0.25f, 0.5f, 1 - 0x1p-24f};
     Planes numbers(2 * OPAL_PROBE_PAIRS, 125);

@@ -80,6 +80,9 @@ FlatScene scene_of_bsdfs(const std::vector<Bsdf> &bsdfs);
 
 Planes planes_of(std::span<const Vec3> points);
 
+// BSDF samples with the factor of radiance as their weight, as paths have it (cl/integrators/steps.cl): over eta^2.
+Planes of_radiance(Planes bsdf_samples);
+
 // Numbers at the corners and edges of the unit cube: each of 0, 2^-24, 1/4, 1/2, 1 - 2^-24 for the three first planes.
 Planes corner_numbers();
 

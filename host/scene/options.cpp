@@ -141,7 +141,7 @@ std::span<const StrategyOption> strategy_options() {
 }
 
 void set_option(Strategy &strategy, const std::string &name, const std::string &value) {
-    const std::string typed = replaced(name, '_', '-');
+    const std::string typed = with_hyphens(name);
     if (typed == "integrator")
         return apply_integrator(strategy, find_integrator(value));
     for (const StrategyOption &option : strategy_options())

@@ -2,18 +2,7 @@
 
 #include "base/table.h"
 
-#include <algorithm>
-
 namespace opal {
-
-namespace {
-
-std::string with_hyphens(std::string name) {
-    std::replace(name.begin(), name.end(), '_', '-');
-    return name;
-}
-
-} // namespace
 
 std::span<const Axis> axes() {
 #define OPAL_CHOICE_ROW(axis, choice, help) {with_hyphens(#choice), help},

@@ -31,14 +31,10 @@ Effort effort_at(int lanes, unsigned seed) {
     return effort;
 }
 
-cl::Program program_from(const Sources &sources, const std::string &text, int lanes) {
-    Sources with_text = sources;
-    with_text.files["tests/inline.cl"] =
-        "#include \"core/lanes.cl\"\n#include \"core/math.cl\"\n#include \"bsdfs/fresnel.cl\"\n" + text;
-    BuildOptions build;
-    build.lanes = lanes;
-    build.kernels = "tests/inline.cl";
-    return build_program(device(), program_text(all_features(), build, with_text), build);
+cl::Program program_with_fresnel(const Sources &sources, const std::string &text, int lanes) {
+    return program_from(sources,
+                        "#include \"core/lanes.cl\"\n#include \"core/math.cl\"\n#include \"bsdfs/fresnel.cl\"\n" + text,
+                        lanes);
 }
 
 Vec3 direction(double degrees) { return {std::sin(degrees * pi / 180), 0, std::cos(degrees * pi / 180)}; }
@@ -161,14 +157,15 @@ Findings check_refraction(const Sources &sources, unsigned) {
         sines2.push_back(float(std::sin(theta) * std::sin(theta)));
     }
     for (int lanes : tested_lanes()) {
-        const cl::Program program = program_from(sources,
-                                                 "kernel void reflectance(global const float *c, global const float "
-                                                 "*s2, float near, float far, global float *out) {\n"
-                                                 "    size_t i = get_global_id(0) * LANES;\n"
-                                                 "    real r = fresnel_dielectric(LOAD(real, (c + i)), LOAD(real, (s2 "
-                                                 "+ i)), boundary_of((real)(near), (real)(far)));\n"
-                                                 "    STORE(r, (out + i));\n}\n",
-                                                 lanes);
+        const cl::Program program =
+            program_with_fresnel(sources,
+                                 "kernel void reflectance(global const float *c, global const float "
+                                 "*s2, float near, float far, global float *out) {\n"
+                                 "    size_t i = get_global_id(0) * LANES;\n"
+                                 "    real r = fresnel_dielectric(LOAD(real, (c + i)), LOAD(real, (s2 "
+                                 "+ i)), boundary_of((real)(near), (real)(far)));\n"
+                                 "    STORE(r, (out + i));\n}\n",
+                                 lanes);
         for (const auto &[near, far] :
              {std::pair{1.f, 1.5f}, {1.5f, 1.f}, {1.000277f, 1.5046f}, {1.33f, 1.34f}, {2.4f, 1.f}}) {
             const Output<float> out(angles);
@@ -276,12 +273,12 @@ Findings check_trigonometry(const Sources &sources, unsigned seed) {
     for (size_t i = 0; i < 1 << 16; i++)
         u.push_back(i < 64 ? float(i) / 32 - 1 : float(random() >> 8) * 0x1p-24f * (i % 8 ? 1.f : 100.f));
     for (int lanes : tested_lanes()) {
-        const cl::Program program =
-            program_from(sources,
-                         "kernel void turn(global const float *u, global float *c, global float *s) {\n"
-                         "    size_t i = get_global_id(0) * LANES;\n    v2 r = cos_sin_2pi(LOAD(real, (u + i)));\n"
-                         "    STORE(r.x, (c + i)); STORE(r.y, (s + i));\n}\n",
-                         lanes);
+        const cl::Program program = program_with_fresnel(
+            sources,
+            "kernel void turn(global const float *u, global float *c, global float *s) {\n"
+            "    size_t i = get_global_id(0) * LANES;\n    v2 r = cos_sin_2pi(LOAD(real, (u + i)));\n"
+            "    STORE(r.x, (c + i)); STORE(r.y, (s + i));\n}\n",
+            lanes);
         const Output<float> cosines(u.size()), sines(u.size());
         run(program, "turn", u.size() / size_t(lanes), u, cosines, sines);
         const std::vector<float> c = cosines.read(), s = sines.read();

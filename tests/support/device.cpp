@@ -63,7 +63,12 @@ cl::Program program(const std::string &kernels, int lanes, const Features &featu
 }
 
 cl::Program program_of(const std::string &text, int lanes, const Features &features, MathMode math) {
-    Sources with_text = sources();
+    return program_from(sources(), text, lanes, features, math);
+}
+
+cl::Program program_from(const Sources &from, const std::string &text, int lanes, const Features &features,
+                         MathMode math) {
+    Sources with_text = from;
     with_text.files["tests/inline.cl"] = text;
     return build(with_text, "tests/inline.cl", lanes, features, math);
 }

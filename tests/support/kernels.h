@@ -15,6 +15,10 @@ cl::Program program(const std::string &kernels, int lanes, const Features &featu
 cl::Program program_of(const std::string &text, int lanes, const Features &features = all_features(),
                        MathMode math = MathMode::precise);
 
+// The same with other sources below cl/.
+cl::Program program_from(const Sources &sources, const std::string &text, int lanes,
+                         const Features &features = all_features(), MathMode math = MathMode::precise);
+
 // A kernel's output of `count` values: an argument of run(), which read() then copies back.
 template <class T> struct Output {
     size_t count;

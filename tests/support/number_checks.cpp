@@ -54,8 +54,8 @@ bool below_one(const Planes &numbers) {
 struct DimensionKeys {
     std::vector<uint> old, added;
 };
-DimensionKeys keys_of_segments(Sources sources, uint first, uint count) {
-    sources.files["tests/inline.cl"] =
+DimensionKeys keys_of_segments(const Sources &sources, uint first, uint count) {
+    const std::string text =
         "#include \"core/lanes.cl\"\n#include \"core/rng.cl\"\n"
         "kernel void sizes(global uint *out) { out[0] = DIMS_A_SEGMENT; out[1] = ADDED_A_SEGMENT; }\n"
         "kernel void keys(uint first, global uint *old, global uint *added) {\n"
@@ -65,9 +65,7 @@ DimensionKeys keys_of_segments(Sources sources, uint first, uint count) {
         "    for (uint n = 0; n < ADDED_A_SEGMENT; n++)\n"
         "        added[i * ADDED_A_SEGMENT + n] = segment_dimension(first + i, ADDED_DIMENSION + n);\n"
         "}\n";
-    BuildOptions build;
-    build.kernels = "tests/inline.cl";
-    const cl::Program program = build_program(device(), program_text(all_features(), build, sources), build);
+    const cl::Program program = program_from(sources, text, 1);
     const Output<uint> sizes(2);
     run(program, "sizes", 1, sizes);
     const Output<uint> old(count * sizes.read()[0]), added(count * sizes.read()[1]);
@@ -124,13 +122,10 @@ Findings check_known_numbers(const Sources &sources, unsigned) {
                 findings.push_back(exact("below 1" + where, below_one(probe.numbers(1 << 16, options))));
             }
     }
-    Sources with_kernel = sources;
-    with_kernel.files["tests/inline.cl"] =
+    const std::string text =
         "#include \"core/lanes.cl\"\n#include \"core/math.cl\"\n#include \"core/rng.cl\"\n"
         "kernel void largest(global float *out) { out[0] = unit_real(0xffffffffu); out[1] = unit_real(0u); }\n";
-    BuildOptions build;
-    build.kernels = "tests/inline.cl";
-    const cl::Program program = build_program(device(), program_text(all_features(), build, with_kernel), build);
+    const cl::Program program = program_from(sources, text, 1);
     const Output<float> out(2);
     run(program, "largest", 1, out);
     findings.push_back(exact("all bits set is 1 - 2^-24", out.read() == std::vector<float>{0x1.fffffep-1f, 0}));
