@@ -9,7 +9,7 @@
 //   BSDF     another BSDF, by the first word of its record
 //   POINT, VECTOR   a position, a direction with its length, in world space; of emitters, whose records the host makes
 // A range is AT_LEAST(x), ABOVE(x), BETWEEN(x, y) with both ends, INSIDE(x, y) without them, or ANY. REQUIRED in place
-// of a default: the file must say it.
+// of a default, of emitters: the file must say it.
 // From the list come the record that host and device share (below), the lanes' struct and its reader
 // (parameters.cl), and on the host the reading of XML, the options of `opal warp`, and the manual
 // (host/scene/parameters.h).
