@@ -33,6 +33,11 @@ void detail(const std::string &text) {
         say("", text.c_str());
 }
 
+void note(const std::string &line) {
+    if (!quiet_chosen)
+        say("note: ", line.c_str());
+}
+
 void warn(const std::string &line) {
     kept_warnings.push_back(line);
     say("warning: ", line.c_str());

@@ -9,11 +9,12 @@
 
 namespace opal {
 
-void set_quiet(bool quiet); // --quiet silences info, never warnings
+void set_quiet(bool quiet); // --quiet silences info and notes, never warnings
 bool is_quiet();
 void info(const std::string &line);
 void set_verbose(bool verbose);       // --verbose
 void detail(const std::string &text); // printed only with --verbose
+void note(const std::string &line);   // prints "note: ...": harmless, and worth knowing once; silent with --quiet
 void warn(const std::string &line);   // prints "warning: ..."
 const std::vector<std::string> &warnings();
 void tell_error(const char *line);  // prints "error: ..."; the process then ends
