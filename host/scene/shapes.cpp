@@ -37,7 +37,9 @@ TriangleMesh TriangleMesh::moved(const Transform &by) const {
     return mesh;
 }
 
-std::string TriangleMesh::text() const { return fmt::format("{} triangles", triangles.size()); }
+std::string TriangleMesh::text() const {
+    return fmt::format("{} triangles{}", triangles.size(), uv_corners.empty() ? "" : " with uv");
+}
 
 Extent Parallelogram::extent() const {
     Extent extent;

@@ -26,7 +26,7 @@ void parse_obj(Properties &properties, const Transform &to_world, Mesh &mesh) {
         mesh.name = name;
     std::filesystem::path file = find_file(properties, name);
     try {
-        mesh.shape = read_obj(file, to_world);
+        mesh.shape = read_obj(file, to_world).mesh;
     } catch (const Error &error) { // the place in the OBJ file comes first
         throw Error(std::string(error.what()) + " (the mesh at " + mesh.place.text() + ")");
     }
