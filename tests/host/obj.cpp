@@ -10,7 +10,7 @@
 #include <tiny_obj_loader.h>
 
 #include <cmath>
-#include <set>
+#include <random>
 
 using namespace opal;
 using opal::test::error_of;
@@ -118,6 +118,207 @@ TEST_CASE("well-formed files mean what tinyobjloader reads in them", "[obj]") {
         CHECK(found == mesh.triangles.size());
         CHECK(expected.size() - found < 1 + expected.size() / 100);
     }
+}
+
+namespace {
+
+struct Habit {
+    std::string text, library, opal;
+};
+
+// "2 triangles of area 1 from 0 0 0": their count, area and first corner.
+std::string summary(const std::vector<std::array<Vec3, 3>> &triangles) {
+    double sum = 0;
+    for (const auto &[a, b, c] : triangles)
+        sum += length(cross(b - a, c - a)) / 2;
+    const Vec3 first = triangles.empty() ? Vec3{} : triangles[0][0];
+    return fmt::format("{} of area {:.6g} from {} {} {}", triangles.size(), sum, first.x, first.y, first.z);
+}
+
+// What the library makes of a text by its usual interface, with its own triangulation.
+std::string library_reads(const std::string &text) {
+    tinyobj::ObjReader reader;
+    if (!reader.ParseFromString(text, ""))
+        return "fails";
+    const std::vector<double> &numbers = reader.GetAttrib().vertices;
+    std::vector<std::array<Vec3, 3>> triangles;
+    for (const tinyobj::shape_t &shape : reader.GetShapes())
+        for (size_t i = 0; i + 2 < shape.mesh.indices.size(); i += 3) {
+            triangles.emplace_back();
+            for (size_t k = 0; k < 3; ++k) {
+                const int index = shape.mesh.indices[i + k].vertex_index;
+                if (index < 0 || size_t(index) >= numbers.size() / 3)
+                    return fmt::format("index {} of {}", index, numbers.size() / 3);
+                const double *p = &numbers[size_t(index) * 3];
+                triangles.back()[k] = {p[0], p[1], p[2]};
+            }
+        }
+    return summary(triangles);
+}
+
+} // namespace
+
+TEST_CASE_METHOD(ObjFixture, "which habits of tinyobjloader remain", "[obj]") {
+    const std::string ring = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 0\nv 1 3 0\nv 3 3 0\nv 3 1 0\n";
+    const std::string two = "v 1 0 0\nv 0 1 0\n"; // behind a vertex: a triangle
+    const std::vector<Habit> habits = {
+        // text, the library alone, Opal
+
+        // Right, and left to the library: indices
+        {square + "f 1 2 3\n", "1 of area 0.5 from 0 0 0", "1 of area 0.5 from 0 0 0"},
+        {square + "f -4 -3 -2\n", "1 of area 0.5 from 0 0 0", "1 of area 0.5 from 0 0 0"},
+        {"f 1 2 3\n" + square, "1 of area 0.5 from 0 0 0", "1 of area 0.5 from 0 0 0"},
+        {square + "vt 0 0\nvn 0 0 1\nf 1/1/1 2//1 3/1\n", "1 of area 0.5 from 0 0 0", "1 of area 0.5 from 0 0 0"},
+        {square + "\tf  1\t 2 3 \r\n", "1 of area 0.5 from 0 0 0", "1 of area 0.5 from 0 0 0"},
+        // Polygons: cut by triangulate()
+        {"v 0 10 0\nv -1 0 0\nv 0 1 0\nv 1 0 0\nf 1 2 3 4\n", "2 of area 11 from 0 10 0", "2 of area 9 from 0 10 0"},
+        {ring + "f 1 2 3 4 1 5 6 7 8 5\n", "5 of area 7 from 0 4 0", "8 of area 12 from 0 4 0"},
+        {"v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nv 4 0 0\nf 1 2 3 4 5\n", "3 of area 0 from 0 0 0",
+         "0 of area 0 from 0 0 0"},
+        {square + "f 1 2\n", "0 of area 0 from 0 0 0", "0 of area 0 from 0 0 0"},
+        // Statements: made clean, or kept away, by ObjStatements
+        {square + "f 1 2 3 # x\n", "fails", "1 of area 0.5 from 0 0 0"},
+        {square + "f 1 2 \\\n3\n", "fails", "1 of area 0.5 from 0 0 0"},
+        {square + "f 1// 2// 3//\n", "fails", "1 of area 0.5 from 0 0 0"},
+        {square + "f 1/ 2/ 3/\n", "fails", "1 of area 0.5 from 0 0 0"},
+        {square + "f 1/0/0 2/0/0 3/0/0\n", "fails", "1 of area 0.5 from 0 0 0"},
+        {square + "f 1 2 3x\n", "1 of area 0.5 from 0 0 0", ":5:7: '3x' is not an integer"},
+        {square + "f 1.0 2.0 3.0\n", "1 of area 0.5 from 0 0 0", ":5:3: '1.0' is not an integer"},
+        {square + "f 1 2 4294967299\n", "1 of area 0.5 from 0 0 0", ":5:7: '4294967299' is too large for an integer"},
+        {square + "f 1 2 3/1/1/1\n", "fails", ":5:7: '3/1/1/1' has more than vertex/texture/normal"},
+        {"\xef\xbb\xbf" + square + "f 1 2 3\n", "1 of area 0.5 from 1 0 0", "1 of area 0.5 from 0 0 0"},
+        {square + "F 1 2 3\n", "0 of area 0 from 0 0 0", "0 of area 0 from 0 0 0"},
+        // Indices out of range: ObjReader
+        {square + "f 1 2 9\n", "index 8 of 4", ":5:7: vertex index 9 is out of range: the file has 4"},
+        {square + "f 1 2 -9\n", "index -5 of 4", ":5:7: vertex index -9 is out of range: 4 so far"},
+        {square + "f 1 2 0\n", "fails", ":5:7: vertex index 0 is out of range: 4 so far"},
+        // Numbers: from ObjStatements
+        {"v 0.7654321 0 0\n" + two + "f 1 2 3\n", "1 of area 0.117284 from 0.7654320999999998 0 0",
+         "1 of area 0.117284 from 0.7654321 0 0"},
+        {"v abc 0 0\n" + two + "f 1 2 3\n", "1 of area 0.5 from 0 0 0", ":1:3: 'abc' is not a number"},
+        {"v nan 0 0\n" + two + "f 1 2 3\n", "1 of area 0.5 from 0 0 0",
+         ":1:3: 'nan' is not a finite number in single precision"},
+        {"v -inf 0 0\n" + two + "f 1 2 3\n", "1 of area 0.5 from 0 0 0",
+         ":1:3: '-inf' is not a finite number in single precision"},
+        {"v 0x10 0 0\n" + two + "f 1 2 3\n", "1 of area 0.5 from 0 0 0", ":1:3: '0x10' is not a number"},
+        {"v 2e 0 0\n" + two + "f 1 2 3\n", "1 of area 0.5 from 0 0 0", ":1:3: '2e' is not a number"},
+        {"v ++2 0 0\n" + two + "f 1 2 3\n", "1 of area 0.5 from 0 0 0", ":1:3: '++2' is not a number"},
+        {"v 2d3 0 0\n" + two + "f 1 2 3\n", "1 of area 0.5 from 2 0 0", ":1:3: '2d3' is not a number"},
+        {"v 2,5 0 0\n" + two + "f 1 2 3\n", "1 of area 0.5 from 2 0 0", ":1:3: '2,5' is not a number"},
+        {"v 2_0 0 0\n" + two + "f 1 2 3\n", "1 of area 0.5 from 2 0 0", ":1:3: '2_0' is not a number"},
+        {"v 2.5.5 0 0\n" + two + "f 1 2 3\n", "1 of area 0.75 from 2.5 0 0", ":1:3: '2.5.5' is not a number"},
+        {"v 0.1f 0 0\n" + two + "f 1 2 3\n", "1 of area 0.45 from 0.1 0 0", ":1:3: '0.1f' is not a number"},
+        {"v 1e400 0 0\n" + two + "f 1 2 3\n", "1 of area 0 from inf 0 0",
+         ":1:3: '1e400' is not a finite number in single precision"},
+        {"v 1e-400 0 0\n" + two + "f 1 2 3\n", "1 of area 0.5 from 0 0 0", "1 of area 0.5 from 0 0 0"},
+        {"v 2 0\n" + two + "f 1 2 3\n", "1 of area 0.5 from 2 0 0", ":1:1: 'v' needs three numbers"},
+        {"v 2 0 0 0.5\n" + two + "f 1 2 3\n", "1 of area 0.5 from 2 0 0", "1 of area 0.5 from 2 0 0"},
+    };
+    for (const Habit &habit : habits) {
+        INFO(habit.text);
+        CHECK(library_reads(habit.text) == habit.library);
+        std::string opal;
+        const std::string error = error_of([&] {
+            const TriangleMesh mesh = read(habit.text);
+            std::vector<std::array<Vec3, 3>> triangles;
+            for (const auto &[a, b, c] : mesh.triangles)
+                triangles.push_back(
+                    {mesh.positions[a.position], mesh.positions[b.position], mesh.positions[c.position]});
+            opal = summary(triangles);
+        });
+        CHECK((error.empty() ? opal : error.substr(file().size())) == habit.opal);
+    }
+
+    // It counts corners in eight bits where it does not triangulate; its callbacks count in 32.
+    std::string circle, face = "f";
+    for (int i = 0; i < 300; ++i) {
+        circle += fmt::format("v {} {} 0\n", std::cos(2 * M_PI * i / 300), std::sin(2 * M_PI * i / 300));
+        face += " " + std::to_string(i + 1);
+    }
+    tinyobj::ObjReader reader;
+    tinyobj::ObjReaderConfig config;
+    config.triangulate = false;
+    REQUIRE(reader.ParseFromString(circle + face + "\n", "", config));
+    CHECK(reader.GetShapes()[0].mesh.num_face_vertices[0] == 300 - 256);
+    CHECK(read(circle + face + "\n").triangles.size() == 298);
+
+    // It cuts the names of materials at blanks.
+    const std::string red = "mtllib a.mtl\n" + square + "usemtl my red\nf 1 2 3\n";
+    REQUIRE(reader.ParseFromString(red, "newmtl my red\nKd 1 0 0\n"));
+    CHECK(reader.GetShapes()[0].mesh.material_ids[0] == -1);
+    CHECK(read_obj(scratch.write("a.obj", red), {}).materials[0].name == "my red");
+}
+
+TEST_CASE_METHOD(ObjFixture, "a spoilt file is read, or an error, and nothing else", "[obj]") {
+    const std::string whole =
+        "# all statements\nmtllib a b.mtl\no thing\n" + square +
+        "v 0.5 0.5 1e-3 1 0 0\nvt 0.5 0.25\nvt 1 0 0\nvn 0 0 1\nvn nan 0 -1e2\n"
+        "g a b\ns 1\nusemtl my red\nf 1 2 3 4 5\nf 1/1 2/2 3/-1 # comment\nf 1//1 2//2 -3//-1\n"
+        "usemtl blue\nf 1/1/1 \\\n 3/2/2 4/0/0\nf 1/ 2// 3\nl 1 2\np 1\nF 1 2 3\nf 7 8 9\nv 2 0 0\n"
+        "v 2 1 0\nv 3 3 .5\nvp 0\n";
+    const std::string tokens[] = {"-1",
+                                  "0",
+                                  "99999999999",
+                                  "1e400",
+                                  "1e-400",
+                                  "nan",
+                                  "/",
+                                  "//",
+                                  "\\\n",
+                                  "#",
+                                  "\r",
+                                  "f",
+                                  "v",
+                                  "usemtl",
+                                  std::string(1, '\0'),
+                                  "\xff",
+                                  "\xef\xbb\xbf",
+                                  std::string(300, '1')};
+    std::mt19937 random(1);
+    const auto below = [&](size_t count) { return size_t(random() % count); };
+    size_t read_count = 0, refused = 0;
+    for (int i = 0; i < 500; ++i) {
+        std::string text = whole;
+        for (size_t changes = 1 + below(3); changes > 0; --changes) {
+            const size_t at = below(text.size());
+            const size_t line = text.rfind('\n', at) + 1; // 0 in the first
+            const size_t line_end = std::min(text.find('\n', at), text.size() - 1) + 1;
+            switch (below(5)) {
+            case 0:
+                text[at] = char(random());
+                break;
+            case 1:
+                text.erase(line, line_end - line);
+                break;
+            case 2:
+                text.insert(line, std::string(text, line, line_end - line));
+                break;
+            case 3:
+                text.insert(at, tokens[below(std::size(tokens))]);
+                break;
+            default:
+                text.resize(at + 1);
+            }
+            if (text.empty())
+                text = "\n";
+        }
+        INFO(text);
+        const std::string error = error_of([&] {
+            const ObjFile obj = read_obj(scratch.write("a.obj", text), {});
+            for (const auto &triangle : obj.mesh.triangles)
+                for (const TriangleMesh::Corner &corner : triangle) {
+                    REQUIRE(corner.position < obj.mesh.positions.size());
+                    REQUIRE((corner.normal == OPAL_NONE || corner.normal < obj.mesh.normals.size()));
+                }
+            REQUIRE((obj.mesh.uv_corners.empty() || obj.mesh.uv_corners.size() == obj.mesh.triangles.size()));
+            for (const ObjMaterialRun &run : obj.material_runs)
+                REQUIRE(run.first < obj.mesh.triangles.size());
+        });
+        ++(error.empty() ? read_count : refused);
+        CHECK((error.empty() || error.starts_with(file() + ":")));
+    }
+    CHECK(read_count > 100);
+    CHECK(refused > 100);
 }
 
 TEST_CASE_METHOD(ObjFixture, "coordinates are read in double", "[obj]") {
