@@ -591,6 +591,9 @@ TEST_CASE_METHOD(ObjFixture, "texture coordinates are kept where triangles have 
     const TriangleMesh moved = mesh.moved(Transform::scale({2, 2, 2}));
     CHECK(moved.uvs == mesh.uvs);
     CHECK(moved.uv_corners == mesh.uv_corners);
+    CHECK(mesh.part({1}).uvs == mesh.uvs);
+    CHECK(mesh.part({1}).uv_corners == decltype(mesh.uv_corners){{0, 1, OPAL_NONE}});
+    CHECK(mesh.part({0}).uv_corners.empty());
     const TriangleMesh unused = read(square + "vt 0 0\nf 1 2 3\n");
     CHECK(unused.uvs.empty());
     CHECK(unused.uv_corners.empty());
@@ -634,7 +637,7 @@ TEST_CASE_METHOD(ObjFixture, "what is left out of a file is noted once, unless -
     CHECK_THAT(test::run_shell(command + " --quiet").err, !Catch::Contains("note"));
 }
 
-TEST_CASE_METHOD(ObjFixture, "names are the rest of the line", "[obj]") {
+TEST_CASE_METHOD(ObjFixture, "names in OBJ files are the rest of the line", "[obj]") {
     const ObjFile obj =
         read_obj(scratch.write("a.obj", square + "mtllib  ./a b.mtl\\\r\n c.mtl\r\nusemtl\tMaterial #25 \r\n"
                                                  "f 1 2 3\nusemtl stra\303\237e.001"),
