@@ -1,5 +1,6 @@
 #include "read/nori/properties.h"
 #include "base/log.h"
+#include "base/values.h"
 #include "support/error_of.h"
 
 #include <catch2/catch.hpp>
@@ -101,6 +102,9 @@ TEST_CASE("NaN, infinity and what single precision cannot hold are errors", "[pr
           "a.xml:2:1: property 'p': 'nan' is not a finite number in single precision");
     CHECK(value_error("float", "3.4e38").empty());
     CHECK(value_error("float", "1e-40").empty());
+    CHECK(value_error("float", "1e-400").empty()); // 0, as in C
+    for (const char *text : {"1e-400", " -1e-400\n", "+1e-99999999999", "0.0e400"})
+        CHECK(parse_number(text) == 0);
 }
 
 TEST_CASE("attributes and contents of properties are checked", "[properties]") {
