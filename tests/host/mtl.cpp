@@ -72,7 +72,7 @@ TEST_CASE_METHOD(MtlFixture, "d, Tr and a halo are one number; d counts", "[mtl]
     CHECK_THAT(told[0], Catch::Contains("contradict each other"));
 }
 
-TEST_CASE_METHOD(MtlFixture, "names are the rest of the line", "[mtl]") {
+TEST_CASE_METHOD(MtlFixture, "names of materials are the rest of the line", "[mtl]") {
     const auto materials = read("newmtl wall red  \nKd 1 0 0\nnewmtl stra\xc3\x9f"
                                 "e.001\r\nnewmtl paint #2\n");
     REQUIRE(materials.size() == 3);
