@@ -3,6 +3,7 @@
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "emitters/interface.cl"
+#include "scene.cl"
 #include "surface.cl"
 
 // 1 / pdf, solid angle measure, of a direction d that meets a surface of that normal, given 1 / pdf, area measure, of

@@ -60,8 +60,8 @@ TriangleMesh TriangleMesh::part(const std::vector<size_t> &indices) const {
             renumber(corner.normal, normals, part.normals, new_normals);
         }
         if (!uv_corners.empty())
-            for (unsigned &uv : part.uv_corners.emplace_back(uv_corners[index]))
-                renumber(uv, uvs, part.uvs, new_uvs);
+            for (unsigned &corner : part.uv_corners.emplace_back(uv_corners[index]))
+                renumber(corner, uvs, part.uvs, new_uvs);
     }
     if (part.uvs.empty())
         part.uv_corners.clear();
