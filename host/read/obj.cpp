@@ -213,6 +213,15 @@ bool has_area(const ObjFile &obj, const std::array<TriangleMesh::Corner, 3> &tri
            rounding * rounding * longest2; // no overflow: squares of floats fit into doubles
 }
 
+// Triangles of a face with these corners.
+std::vector<std::array<unsigned, 3>> cut(const ObjFile &obj, const Face &face, const std::vector<Vec3> &outline) {
+    try {
+        return triangulate(outline);
+    } catch (const Error &error) {
+        obj.fail(face.statement, error.what());
+    }
+}
+
 std::vector<std::array<TriangleMesh::Corner, 3>> make_triangles(ObjFile &obj) {
     std::vector<std::array<TriangleMesh::Corner, 3>> triangles;
     std::vector<Vec3> outline;
@@ -222,7 +231,7 @@ std::vector<std::array<TriangleMesh::Corner, 3>> make_triangles(ObjFile &obj) {
         outline.clear();
         for (size_t i = 0; i < face.count; ++i)
             outline.push_back(obj.positions[corner[i].position]);
-        for (auto [a, b, c] : triangulate(outline)) {
+        for (auto [a, b, c] : cut(obj, face, outline)) {
             std::array<TriangleMesh::Corner, 3> triangle = {corner[a], corner[b], corner[c]};
             if (has_area(obj, triangle))
                 triangles.push_back(triangle);
