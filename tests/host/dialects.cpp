@@ -72,6 +72,11 @@ TEST_CASE_METHOD(DialectFixture, "every name that tells a dialect loads and tell
           "unknown dialect 'ehz'; available: upstream, course, eth");
 }
 
+TEST_CASE_METHOD(DialectFixture, "another material's reflectance tells no dialect", "[dialects]") {
+    const std::string plastic = "<bsdf type='plastic'><color name='reflectance' value='1 0 0'/></bsdf>";
+    CHECK(load_bsdf(plastic, {.lenient = true}).dialect == Dialect::upstream);
+}
+
 TEST_CASE_METHOD(DialectFixture, "ETH's camera has its x axis to the right of the image", "[dialects]") {
     const Vec3 left = camera_x(load(camera + light)), right = camera_x(load(camera + light + integrator("direct_ems")));
     CHECK(length(left + right) < 1e-15);

@@ -23,22 +23,28 @@ void choose_filter(SceneDescription &scene) {
     filter.radius = is_box ? 0.5 : 2;
 }
 
-const char *camera_of(Dialect dialect) {
-    return dialect == Dialect::eth ? "the camera's +x points to the right of the image"
-                                   : "the camera's +x points to the left of the image";
+// What follows from a dialect.
+const char *meaning_of(Dialect dialect) {
+    switch (dialect) {
+    case Dialect::course:
+        return "a box filter by default";
+    case Dialect::eth:
+        return "the camera's +x points to the right of the image";
+    default:
+        return "the camera's +x points to the left of the image";
+    }
 }
 
 Dialect dialect_of(const XmlNode &scene, const ParseContext &context) {
     if (context.dialect)
         return *context.dialect;
     const DialectChoice choice = dialect_of(scene);
+    const std::string dialect = name_of(choice.dialect), meaning = meaning_of(choice.dialect);
     if (!choice.against.empty())
-        warn(fmt::format("{}: names of several dialects: {}, and {}; it is read as {}, {} (--dialect)",
-                         scene.place().text(), choice.reason, choice.against, name_of(choice.dialect),
-                         camera_of(choice.dialect)));
+        warn(fmt::format("{}: names of several dialects: {}, and {}; it is read as {}: {}; --dialect decides otherwise",
+                         scene.place().text(), choice.reason, choice.against, dialect, meaning));
     else if (!choice.reason.empty())
-        info(fmt::format("dialect {}, by {}: {} (--dialect)", name_of(choice.dialect), choice.reason,
-                         camera_of(choice.dialect)));
+        info(fmt::format("dialect {}, by {}: {}; --dialect decides otherwise", dialect, choice.reason, meaning));
     return choice.dialect;
 }
 

@@ -37,21 +37,30 @@ const std::vector<DialectName> names_of_dialects = {
 // The first name of each dialect, in document order.
 using FirstNames = std::array<std::string, 3>;
 
-void find_names(const XmlNode &node, FirstNames &found) {
-    for (const DialectName &row : names_of_dialects) {
-        const bool is_property = row.tag == "color";
-        if (node.tag() != row.tag || (!row.name.empty() && node.attribute(is_property ? "name" : "type") != row.name))
-            continue;
-        std::string &first = found[size_t(row.dialect)];
-        if (!first.empty())
-            continue;
-        const std::string what = is_property        ? fmt::format("property '{}'", row.name)
-                                 : row.name.empty() ? fmt::format("tag <{}>", row.tag)
-                                                    : fmt::format("{} '{}'", row.tag, row.name);
-        first = fmt::format("{} at {}", what, node.place().text());
+// Whether the node bears that name. A property does in a diffuse bsdf alone: other materials differ more than by names.
+bool bears(const DialectName &row, const XmlNode &node, const XmlNode &parent) {
+    if (node.tag() != row.tag)
+        return false;
+    if (row.is_property())
+        return parent.tag() == "bsdf" && parent.attribute("type") == "diffuse" && node.attribute("name") == row.name;
+    return row.name.empty() || node.attribute("type") == row.name;
+}
+
+std::string text_of(const DialectName &row) {
+    if (row.is_property())
+        return fmt::format("property '{}'", row.name);
+    return row.name.empty() ? fmt::format("tag <{}>", row.tag) : fmt::format("{} '{}'", row.tag, row.name);
+}
+
+void find_names(const XmlNode &parent, FirstNames &found) {
+    for (const XmlNode &node : parent.children([](const SourcePlace &, const std::string &) {})) {
+        for (const DialectName &row : names_of_dialects) {
+            std::string &first = found[size_t(row.dialect)];
+            if (first.empty() && bears(row, node, parent))
+                first = fmt::format("{} at {}", text_of(row), node.place().text());
+        }
+        find_names(node, found);
     }
-    for (const XmlNode &child : node.children([](const SourcePlace &, const std::string &) {}))
-        find_names(child, found);
 }
 
 bool matches(const std::string &pattern, const std::string &name) {

@@ -20,6 +20,7 @@ struct DialectName {
     Dialect dialect;
     std::string tag;  // of an object, or "color" for a property
     std::string name; // its type, or the property's name; empty: the tag itself
+    bool is_property() const { return tag == "color"; }
 };
 std::span<const DialectName> dialect_names();
 
