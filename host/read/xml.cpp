@@ -36,6 +36,19 @@ std::vector<XmlNode> elements_of(const XmlDocument &document, pugi::xml_node par
     return elements;
 }
 
+// The first element that is nested too deep for parsers, which call themselves for each level.
+class TooDeep : public pugi::xml_tree_walker {
+public:
+    static constexpr int most_levels = 64; // scenes of Nori have about 6
+    bool for_each(pugi::xml_node &node) override {
+        if (depth() < most_levels || node.type() != pugi::node_element)
+            return true;
+        found = node;
+        return false;
+    }
+    pugi::xml_node found;
+};
+
 } // namespace
 
 SourcePlace place_in(const std::string &file, std::string_view text, ptrdiff_t offset) {
@@ -88,6 +101,10 @@ XmlDocument::XmlDocument(const std::filesystem::path &file, std::string text)
         cannot_read(file, ENOMEM);
     if (!result)
         throw XmlError(place(result.offset), std::string("not well-formed XML: ") + result.description());
+    TooDeep walker;
+    document_.traverse(walker);
+    if (walker.found)
+        XmlNode(*this, walker.found).fail(fmt::format("more than {} tags within each other", TooDeep::most_levels));
 }
 
 XmlNode XmlDocument::root() const {

@@ -24,6 +24,7 @@ bool contains(const std::vector<std::string> &names, const std::string &name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+// Whether a value is that number, in all channels of a colour.
 template <class Value> bool is_all(const Value &value, double x) {
     if (const auto *color = std::get_if<Color>(&value))
         return *color == Color{x, x, x};
