@@ -1,5 +1,5 @@
-// av: average visibility (the first exercise of ETH's course): the share of the hemisphere around the shading normal, by
-// solid angle, in which nothing is nearer than `length`. Where the camera sees nothing it is 1.
+// av: average visibility (the first exercise of ETH's course): the share of the hemisphere around the shading normal,
+// by solid angle, in which nothing is nearer than `length`. Where the camera sees nothing it is 1.
 //   length   in the scene's units
 #include "core/lanes.cl"
 #include "core/math.cl"

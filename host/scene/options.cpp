@@ -108,9 +108,9 @@ const std::vector<IntegratorType> dialect_types = {
     {"path_mis", CHOICE_integrator_path, CHOICE_lighting_mis, CHOICE_rr_throughput_eta},
 };
 
-// Further names, which are listed last. direct_mats and so on are those of ETH's and Zaragoza's courses, whose own
-// sheets and public forks agree: direct and direct_whitted sample every light once, direct_ems one of them. mipath is
-// the path_mis of 2012.
+// Further names, which are listed last. direct_mats and so on are those of ETH's and Zaragoza's courses, by what public
+// forks compute: direct and direct_whitted sample every light once, direct_ems one of them, which is one expectation.
+// mipath is the path_mis of 2012.
 const std::vector<IntegratorType> other_types = {
     {"direct", CHOICE_integrator_direct_lighting, CHOICE_lighting_emitter},
     {"direct_ems", CHOICE_integrator_direct_lighting, CHOICE_lighting_emitter},

@@ -17,7 +17,7 @@ struct EmitterType {
 };
 
 const char *const pointlight = "pointlight";
-constexpr double sphere = 4 * std::numbers::pi; // solid angle of all directions
+constexpr double full_sphere = 4 * std::numbers::pi; // solid angle of all directions
 
 // parallelogram_emitter: the 2022 course's name for the area light of a parallelogram. pointlight: Zaragoza's course,
 // which has defaults.
@@ -25,8 +25,8 @@ constexpr double sphere = 4 * std::numbers::pi; // solid angle of all directions
 const std::vector<EmitterType> emitter_types = {
     {"area", {}},
     {"parallelogram_emitter", {}},
-    OPAL_SCENE_EMITTERS(OPAL_EMITTER_TYPE){pointlight,
-                                           emitter_point{.position = {0, 100, 0}, .power = {sphere, sphere, sphere}}}};
+    OPAL_SCENE_EMITTERS(OPAL_EMITTER_TYPE){
+        pointlight, emitter_point{.position = {0, 100, 0}, .power = {full_sphere, full_sphere, full_sphere}}}};
 
 // The type of an emitter in a <parent>. Throws NoObject if there is none, or if it stands in the wrong place.
 const EmitterType &type_in(Properties &properties, const char *parent) {
@@ -35,8 +35,9 @@ const EmitterType &type_in(Properties &properties, const char *parent) {
         throw NoObject{};
     const std::string wanted = type->parameters ? "scene" : "mesh";
     if (wanted != parent) {
-        properties.context().unknown(properties.object(), "emitter '" + type->name + "' must stand in a <" + wanted +
-                                                              ">, not in a <" + parent + ">");
+        properties.context().unknown(
+            properties.object(), fmt::format("emitter '{}' must stand in a <{}>, not in a <{}>{}", type->name, wanted,
+                                             parent, properties.context().lenient ? "; it is left out" : ""));
         throw NoObject{};
     }
     return *type;
@@ -50,7 +51,7 @@ void read_intensity(Properties &properties, emitter_point &light) {
     const bool is_good = *std::min_element(intensity->begin(), intensity->end()) >= 0;
     properties.check(is_good, "radiance", "must not be negative");
     for (size_t i = 0; is_good && i < intensity->size(); i++)
-        light.power[i] = sphere * (*intensity)[i];
+        light.power[i] = full_sphere * (*intensity)[i];
 }
 
 // Whether a parameter that must be given has no value yet.
