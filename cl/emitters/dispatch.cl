@@ -79,10 +79,12 @@ static real emitter_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d,
     return pdf;
 }
 
-// The emitters that rays meet: that of the surface s, on its shading normal's side, where they hit one; else the
-// environment. Sets *met to the active lanes that meet one; the others' ids are valid.
+// The emitters that rays meet: that of the surface s, on a side that emits, where they hit one; else the environment.
+// Sets *met to the active lanes that meet one; the others' ids are valid.
 static uints emitter_met(const Scene *scene, const Surface *s, mask hit, mask active, mask *met) {
-    *met = active & hit & to_mask(s->emitter != OPAL_NONE) & (s->wi.z > 0);
+    mask on_light = active & hit & to_mask(s->emitter != OPAL_NONE);
+    mask both_sides = emits_on_both_sides(scene, uints_pick(on_light, s->emitter, (uints)(0)));
+    *met = on_light & ((s->wi.z > 0) | both_sides);
     uints id = s->emitter;
     if (ENVIRONMENT_KINDS > 0) {
         uints environment = (uints)(scene->settings->environment);

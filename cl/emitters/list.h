@@ -77,6 +77,7 @@ typedef struct {
     float probability;    // of choosing it (--emitter-choice), as the alias table and the random numbers' grid have it
     float accept;         // alias table: keep this row if a uniform number is below, else take row `other`
     uint other;
+    uint two_sided;       // of a mesh: 1, it emits on both sides
     uint first, count;    // its rows of a table; of a mesh, of the light triangles. Others: 0, 0
     union {
         float color[3];   // with which every record begins

@@ -1,5 +1,5 @@
-// mesh: a triangle mesh that emits on the side of its shading normals. A triangle is chosen by area or uniformly
-// (--triangle-choice), then a point on it uniformly; the density is that of both choices.
+// mesh: a triangle mesh that emits on the side of its shading normals, or on both. A triangle is chosen by area or
+// uniformly (--triangle-choice), then a point on it uniformly; the density is that of both choices.
 //   <mesh type="obj"> ... <emitter type="area"> <color name="radiance" value="40 40 40"/> </emitter> </mesh>
 #include "core/lanes.cl"
 #include "core/rng.cl"
@@ -22,7 +22,7 @@ static LightSample emitter_mesh_sample(const Scene *scene, uints id, v3 color, R
     v3 e1 = v3_sub(p1, p0), e2 = v3_sub(p2, p0);
     v3 normal = v3_normalize(v3_cross(e1, e2));
     v3 shading = shading_normal(scene, corner_normals(scene, triangle_id(scene, slot)), b1, b2, normal);
-    return sample_of_point(from, v3_mad(e1, b1, v3_mad(e2, b2, p0)), normal, shading,
+    return sample_of_point(from, v3_mad(e1, b1, v3_mad(e2, b2, p0)), normal, shading, emits_on_both_sides(scene, id),
                            GATHER(real, scene->light_triangles, row, .inverse_pdf), ray_offset_of(p0, p1, p2), color);
 }
 

@@ -1,4 +1,5 @@
-// parallelogram: an area light o + x u + y v that emits on the side of u x v, sampled uniformly over its area.
+// parallelogram: an area light o + x u + y v that emits on the side of u x v, or on both, sampled uniformly over its
+// area.
 //   <mesh type="parallelogram"> ... <emitter type="area"> <color name="radiance" value="40 40 40"/> </emitter> </mesh>
 #include "core/lanes.cl"
 #include "core/rng.cl"
@@ -15,6 +16,7 @@ static LightSample emitter_parallelogram_sample(const Scene *scene, uints id, v3
     v3 normal = GATHER_V3(scene->emitters, id, .u.of_parallelogram.normal);
     real offset = ray_offset_of(corner, v3_add(corner, v3_add(e1, e2)), v3_add(corner, e1));
     return sample_of_point(from, v3_mad(e1, u.x, v3_mad(e2, u.y, corner)), normal, normal,
+                           emits_on_both_sides(scene, id),
                            GATHER(real, scene->emitters, id, .u.of_parallelogram.area), offset, color);
 }
 

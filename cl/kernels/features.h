@@ -22,6 +22,8 @@
     OPAL_CAMERAS(OPAL_CAMERA_FEATURE) \
     /* several emitters, one of which is chosen; else emitter 0 is meant */ \
     OPAL_FEATURE_ROW(many_emitters, "many_emitters") \
+    /* some mesh emits on both sides */ \
+    OPAL_FEATURE_ROW(two_sided_lights, "two_sided_lights") \
     /* some mesh interpolates vertex normals */ \
     OPAL_FEATURE_ROW(shading_normals, "shading_normals") \
     /* the face list, tested by all lanes at once: a tiny scene, or the largest faces */ \

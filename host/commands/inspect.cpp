@@ -67,9 +67,29 @@ std::string parameters_text(Light light) {
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+// "diffuse, albedo 0.5 0.5 0.5"; a BSDF that leads to others is followed by them
+std::string bsdf_text(const Bsdf &bsdf) {
+    std::string text = bsdf_name(bsdf.kind());
+    const auto number = [&](size_t word) { return std::bit_cast<float>(bsdf.words[word]); };
+    for (const Parameter &parameter : bsdf_parameters(bsdf.kind()))
+        if (parameter.type == ParameterType::COLOR)
+            text += fmt::format(", {} {:g} {:g} {:g}", parameter.xml_name, number(parameter.word),
+                                number(parameter.word + 1), number(parameter.word + 2));
+        else if (parameter.type == ParameterType::NUMBER)
+            text += fmt::format(", {} {:g}", parameter.xml_name, number(parameter.word));
+        else if (parameter.type == ParameterType::FLAG && bsdf.words[parameter.word] != 0)
+            text += ", " + parameter.xml_name;
+    for (const Bsdf &child : bsdf.children)
+        text += " " + bsdf_text(child);
+    return text;
+}
+
 void print_mesh(const Mesh &mesh) {
     row("", "{}: {}, {}{}", mesh.name, std::visit([](const auto &shape) { return shape.text(); }, mesh.shape),
-        bsdf_name(mesh.bsdf.kind()), mesh.radiance ? ", emits " + color_text(*mesh.radiance) + " W/(m^2 sr)" : "");
+        bsdf_text(mesh.bsdf),
+        mesh.radiance ? fmt::format(", emits {} W/(m^2 sr){}", color_text(*mesh.radiance),
+                                    mesh.emits_on_both_sides ? " on both sides" : "")
+                      : "");
 }
 
 void print_scene(const SceneDescription &scene, const FlatScene &flat) {

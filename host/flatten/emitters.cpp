@@ -72,8 +72,9 @@ private:
         EmitterRecord record{};
         const bool whole = std::holds_alternative<Parallelogram>(mesh.shape);
         record.kind = whole ? EMITTER_parallelogram : EMITTER_mesh;
+        record.two_sided = mesh.emits_on_both_sides;
         const double area = whole ? flatten_parallelogram(from, record, scene_) : flatten_mesh(from, record, scene_);
-        return add(record, pi * luminance(*mesh.radiance) * area);
+        return add(record, pi * luminance(*mesh.radiance) * area * (mesh.emits_on_both_sides ? 2 : 1));
     }
 
     void add_light(const Light &light, double radius) {

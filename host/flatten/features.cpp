@@ -79,6 +79,14 @@ public:
         return {scene.emitters.size() > 1, plural(scene.emitters.size(), "emitter", "emitters")};
     }
 
+    Decision two_sided_lights() const {
+        if (!integrator.has(OPAL_ASKS_LIGHTS))
+            return {false, "this integrator asks no emitter"};
+        const auto on_both = [](const EmitterRecord &emitter) { return emitter.two_sided != 0; };
+        return counted(std::size_t(std::count_if(scene.emitters.begin(), scene.emitters.end(), on_both)),
+                       scene.emitters.size(), "emitter", "emitters");
+    }
+
     Decision shading_normals() const {
         const auto smooth = [](const Triangle &triangle) { return triangle.normal[0] != OPAL_NONE; };
         return counted(std::size_t(std::count_if(scene.triangles.begin(), scene.triangles.end(), smooth)),

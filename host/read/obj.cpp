@@ -2,8 +2,8 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "base/read_file.h"
 #include "base/values.h"
+#include "read/file_kind.h"
 #include "read/xml.h"
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ struct Face {
 };
 
 // The contents of the file. Indices count from 0; `none`: not given.
-struct ObjFile {
+struct Contents {
     std::string name;
     std::string_view text;
     const char *reading = nullptr; // the word at which an error happened
@@ -33,6 +33,9 @@ struct ObjFile {
     const char *largest_texture_corner = nullptr;
     std::vector<TriangleMesh::Corner> corners;
     std::vector<Face> faces;
+    std::vector<ObjMaterial> materials;
+    std::vector<std::pair<size_t, unsigned>> uses; // first face, material
+    std::vector<ObjLibrary> libraries;
     size_t dropped = 0; // faces of fewer than three corners, triangles without area
 
     [[noreturn]] void fail(const char *word, const std::string &message) const {
@@ -81,7 +84,7 @@ private:
 using Words = std::vector<std::string_view>;
 
 // Further numbers on the line, such as vertex colours, are ignored.
-Vec3 read_triple(ObjFile &obj, const Words &words) {
+Vec3 read_triple(Contents &obj, const Words &words) {
     if (words.size() < 4)
         throw Error("'" + std::string(words[0]) + "' needs three numbers");
     double numbers[3];
@@ -103,7 +106,7 @@ unsigned read_index(std::string_view word, size_t count_so_far, const char *what
 }
 
 // v, v/vt, v//vn or v/vt/vn.
-TriangleMesh::Corner read_corner(ObjFile &obj, std::string_view word) {
+TriangleMesh::Corner read_corner(Contents &obj, std::string_view word) {
     obj.reading = word.data();
     std::string_view parts[3];
     size_t count = 0;
@@ -125,14 +128,25 @@ TriangleMesh::Corner read_corner(ObjFile &obj, std::string_view word) {
             parts[2].empty() ? none : read_index(parts[2], obj.normals.size(), "normal")};
 }
 
-void read_face(ObjFile &obj, const Words &words) {
+void read_face(Contents &obj, const Words &words) {
     size_t first = obj.corners.size();
     for (size_t i = 1; i < words.size(); ++i)
         obj.corners.push_back(read_corner(obj, words[i]));
     obj.faces.push_back({first, words.size() - 1, words[0].data()});
 }
 
-void read_statement(ObjFile &obj, const Words &words) {
+std::string rest_of_line(const Words &words) { return {words[1].data(), words.back().data() + words.back().size()}; }
+
+void use_material(Contents &obj, const Words &words) {
+    const std::string name = rest_of_line(words);
+    const auto known = std::find_if(obj.materials.begin(), obj.materials.end(),
+                                    [&](const ObjMaterial &material) { return material.name == name; });
+    obj.uses.push_back({obj.faces.size(), unsigned(known - obj.materials.begin())});
+    if (known == obj.materials.end())
+        obj.materials.push_back({name, place_in(obj.name, obj.text, obj.reading - obj.text.data())});
+}
+
+void read_statement(Contents &obj, const Words &words) {
     obj.reading = words[0].data();
     if (words[0] == "v")
         obj.positions.push_back(read_triple(obj, words));
@@ -142,9 +156,13 @@ void read_statement(ObjFile &obj, const Words &words) {
         ++obj.texture_count;
     else if (words[0] == "f")
         read_face(obj, words);
+    else if (words.size() > 1 && words[0] == "mtllib")
+        obj.libraries.push_back({rest_of_line(words), place_in(obj.name, obj.text, obj.reading - obj.text.data())});
+    else if (words.size() > 1 && words[0] == "usemtl")
+        use_material(obj, words);
 }
 
-void read_statements(ObjFile &obj) {
+void read_statements(Contents &obj) {
     Statements statements(obj.text);
     for (Words words; statements.next(words);)
         try {
@@ -155,7 +173,7 @@ void read_statements(ObjFile &obj) {
 }
 
 // Finds the word of a face's corner again, for an error message.
-const char *corner_word(const ObjFile &obj, const Face &face, size_t corner) {
+const char *corner_word(const Contents &obj, const Face &face, size_t corner) {
     Words words;
     Statements(obj.text.substr(size_t(face.statement - obj.text.data()))).next(words);
     return words[1 + corner - face.first].data();
@@ -166,7 +184,7 @@ std::string too_large(const char *what, unsigned index, size_t count) {
 }
 
 // Texture coordinates are not kept: Opal has no textures.
-void check_indices(const ObjFile &obj) {
+void check_indices(const Contents &obj) {
     for (const Face &face : obj.faces)
         for (size_t i = face.first; i < face.first + face.count; ++i) {
             const auto [position, normal] = obj.corners[i];
@@ -180,7 +198,7 @@ void check_indices(const ObjFile &obj) {
 }
 
 // Replaces normals of length 0 by `none` in the corners.
-void to_world_space(ObjFile &obj, const Transform &to_world) {
+void to_world_space(Contents &obj, const Transform &to_world) {
     for (Vec3 &p : obj.positions) {
         p = to_world.point(p);
         if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= std::numeric_limits<float>::max()))
@@ -198,7 +216,7 @@ void to_world_space(ObjFile &obj, const Transform &to_world) {
 }
 
 // A triangle has no area if its height over the longest edge may be due to rounding the coordinates to double.
-bool has_area(const ObjFile &obj, const std::array<TriangleMesh::Corner, 3> &triangle) {
+bool has_area(const Contents &obj, const std::array<TriangleMesh::Corner, 3> &triangle) {
     Vec3 p[3];
     double largest = 0, longest2 = 0;
     for (int i = 0; i < 3; ++i) {
@@ -214,7 +232,7 @@ bool has_area(const ObjFile &obj, const std::array<TriangleMesh::Corner, 3> &tri
 }
 
 // Triangles of a face with these corners.
-std::vector<std::array<unsigned, 3>> cut(const ObjFile &obj, const Face &face, const std::vector<Vec3> &outline) {
+std::vector<std::array<unsigned, 3>> cut(const Contents &obj, const Face &face, const std::vector<Vec3> &outline) {
     try {
         return triangulate(outline);
     } catch (const Error &error) {
@@ -222,10 +240,15 @@ std::vector<std::array<unsigned, 3>> cut(const ObjFile &obj, const Face &face, c
     }
 }
 
-std::vector<std::array<TriangleMesh::Corner, 3>> make_triangles(ObjFile &obj) {
+std::vector<std::array<TriangleMesh::Corner, 3>> make_triangles(Contents &obj, std::vector<ObjMaterialRun> &runs) {
     std::vector<std::array<TriangleMesh::Corner, 3>> triangles;
     std::vector<Vec3> outline;
+    unsigned material = none;
+    auto use = obj.uses.begin();
     for (const Face &face : obj.faces) {
+        for (; use != obj.uses.end() && use->first <= size_t(&face - obj.faces.data()); ++use)
+            material = use->second;
+        const size_t first = triangles.size();
         const TriangleMesh::Corner *corner = &obj.corners[face.first];
         obj.dropped += face.count < 3;
         outline.clear();
@@ -238,6 +261,8 @@ std::vector<std::array<TriangleMesh::Corner, 3>> make_triangles(ObjFile &obj) {
             else
                 ++obj.dropped;
         }
+        if (!obj.uses.empty() && triangles.size() > first && (runs.empty() || runs.back().material != material))
+            runs.push_back({first, material});
     }
     return triangles;
 }
@@ -263,16 +288,17 @@ std::vector<Vec3> compact(const std::vector<Vec3> &all, std::vector<std::array<T
 
 } // namespace
 
-TriangleMesh read_obj(const std::filesystem::path &file, const Transform &to_world) {
-    const std::string text = read_file(file);
-    ObjFile obj;
+ObjFile read_obj(const std::filesystem::path &file, const Transform &to_world) {
+    const std::string text = read_text_file(file, FileKind::obj);
+    Contents obj;
     obj.name = file.string();
     obj.text = text;
     read_statements(obj);
     check_indices(obj);
     to_world_space(obj, to_world);
-    TriangleMesh mesh;
-    mesh.triangles = make_triangles(obj);
+    ObjFile read;
+    TriangleMesh &mesh = read.mesh;
+    mesh.triangles = make_triangles(obj, read.material_runs);
     const std::string dropped = obj.dropped ? fmt::format("dropped {} triangles without area", obj.dropped) : "";
     if (mesh.triangles.empty())
         throw Error(obj.name + ": holds no triangles" + (obj.dropped ? ": " + dropped : ""));
@@ -280,7 +306,9 @@ TriangleMesh read_obj(const std::filesystem::path &file, const Transform &to_wor
         warn(fmt::format("{}: {}, kept {}", obj.name, dropped, mesh.triangles.size()));
     mesh.positions = compact(obj.positions, mesh.triangles, &TriangleMesh::Corner::position);
     mesh.normals = compact(obj.normals, mesh.triangles, &TriangleMesh::Corner::normal);
-    return mesh;
+    read.materials = std::move(obj.materials);
+    read.libraries = std::move(obj.libraries);
+    return read;
 }
 
 } // namespace opal

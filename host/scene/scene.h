@@ -44,7 +44,8 @@ struct Mesh {
     std::string name; // file name or given name
     Shape shape;
     Bsdf bsdf;
-    std::optional<Color> radiance; // emitted by its area emitter, W / (m^2 sr)
+    std::optional<Color> radiance;    // emitted by its area emitter, W / (m^2 sr)
+    bool emits_on_both_sides = false; // else on the side of its shading normals
     SourcePlace place;
 };
 

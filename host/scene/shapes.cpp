@@ -1,5 +1,7 @@
 #include "scene/shapes.h"
 
+#include "shared/types.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,7 +39,32 @@ TriangleMesh TriangleMesh::moved(const Transform &by) const {
     return mesh;
 }
 
-std::string TriangleMesh::text() const { return fmt::format("{} triangles", triangles.size()); }
+TriangleMesh TriangleMesh::part(const std::vector<size_t> &indices) const {
+    TriangleMesh part;
+    std::vector<unsigned> new_positions(positions.size(), OPAL_NONE), new_normals(normals.size(), OPAL_NONE);
+    // Renumbers an index in the order of first use, and copies what it names.
+    const auto renumber = [](unsigned &index, const auto &from, auto &to, std::vector<unsigned> &renumbered) {
+        if (index == OPAL_NONE)
+            return;
+        if (renumbered[index] == OPAL_NONE) {
+            renumbered[index] = unsigned(to.size());
+            to.push_back(from[index]);
+        }
+        index = renumbered[index];
+    };
+    for (size_t index : indices) {
+        std::array<Corner, 3> &triangle = part.triangles.emplace_back(triangles[index]);
+        for (Corner &corner : triangle) {
+            renumber(corner.position, positions, part.positions, new_positions);
+            renumber(corner.normal, normals, part.normals, new_normals);
+        }
+    }
+    return part;
+}
+
+std::string TriangleMesh::text() const {
+    return fmt::format("{} triangles{}", triangles.size(), uv_corners.empty() ? "" : " with uv");
+}
 
 Extent Parallelogram::extent() const {
     Extent extent;

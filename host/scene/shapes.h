@@ -31,9 +31,14 @@ struct TriangleMesh {
         unsigned position, normal;
     };                                            // indices; normal OPAL_NONE: the geometric normal
     std::vector<std::array<Corner, 3>> triangles; // degenerate ones already dropped
+    std::vector<std::array<float, 2>> uvs;        // texture coordinates, v upwards; may be empty
+    // Indices of uvs, one array a triangle, OPAL_NONE where a corner has none; empty where no triangle has any.
+    std::vector<std::array<unsigned, 3>> uv_corners;
 
     Extent extent() const; // of the positions that triangles use
     TriangleMesh moved(const Transform &by) const;
+    // The mesh of some of the triangles, by their indices, with what these use; in that order.
+    TriangleMesh part(const std::vector<size_t> &indices) const;
     std::string text() const; // for people: "12 triangles"
 };
 

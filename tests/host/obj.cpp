@@ -20,7 +20,7 @@ struct ObjFixture {
     test::ScratchFolder scratch;
     std::string file() const { return (scratch / "a.obj").string(); }
     TriangleMesh read(const std::string &text, const Transform &to_world = {}) const {
-        return read_obj(scratch.write("a.obj", text), to_world);
+        return read_obj(scratch.write("a.obj", text), to_world).mesh;
     }
     // The error without the file's name, which leads.
     std::string error_in(const std::string &text) const {
@@ -101,7 +101,7 @@ TEST_CASE("well-formed files mean what tinyobjloader reads in them", "[obj]") {
     REQUIRE(files.size() > 20);
     for (const std::filesystem::path &file : files) {
         INFO(file.string());
-        const TriangleMesh mesh = read_obj(file, {});
+        const TriangleMesh mesh = read_obj(file, {}).mesh;
         const auto expected = by_tinyobjloader(file);
         size_t next = 0, found = 0; // those without area are left out of the mesh
         for (const auto &triangle : mesh.triangles) {
@@ -159,6 +159,28 @@ TEST_CASE_METHOD(ObjFixture, "all else is ignored: materials, groups, lines, com
              "g group\r\nusemtl b\r\ns off\r\nl 1 2\r\np 1\r\nvp 1 2\r\n\r\nf 1 2 \\\n 3");
     REQUIRE(mesh.triangles.size() == 1);
     CHECK(area(mesh) == 0.5);
+}
+
+TEST_CASE_METHOD(ObjFixture, "materials are named by the rest of the line, and kept as runs of triangles", "[obj]") {
+    const ObjFile obj = read_obj(scratch.write("a.obj", "mtllib my lib.mtl \n" + square +
+                                                            "f 1 2 3 4\nusemtl my red\nf 1 2 3\nusemtl none\nusemtl "
+                                                            "blue\t\nf 1 1 2\nf 1 2 3\n usemtl my red\nf 1 2 3\n"),
+                                 {});
+    REQUIRE(obj.libraries.size() == 1);
+    CHECK(obj.libraries[0].names == "my lib.mtl");
+    CHECK(obj.libraries[0].place.text() == file() + ":1:1");
+    REQUIRE(obj.materials.size() == 3);
+    CHECK(obj.materials[0].name == "my red");
+    CHECK(obj.materials[0].place.text() == file() + ":7:1");
+    CHECK(obj.materials[1].name == "none");
+    CHECK(obj.materials[2].name == "blue");
+    const std::vector<std::pair<size_t, unsigned>> expected = {{0, OPAL_NONE}, {2, 0}, {3, 2}, {4, 0}};
+    REQUIRE(obj.material_runs.size() == expected.size());
+    for (size_t i = 0; i < expected.size(); ++i) {
+        CHECK(obj.material_runs[i].first == expected[i].first);
+        CHECK(obj.material_runs[i].material == expected[i].second);
+    }
+    CHECK(read_obj(scratch.write("a.obj", square + "f 1 2 3\n"), {}).material_runs.empty());
 }
 
 TEST_CASE_METHOD(ObjFixture, "only what triangles use is kept", "[obj]") {

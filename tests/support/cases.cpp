@@ -49,7 +49,7 @@ std::vector<LightCase> emitter_cases(const std::filesystem::path &folder) {
         }
         if (document.root().tag() != "mesh")
             document.root().fail("a case of this folder is a <mesh> with an area emitter, or an <emitter> of a scene");
-        const Mesh mesh = parse_mesh(document.root(), {folder});
+        const Mesh mesh = parse_meshes(document.root(), {folder}).at(0);
         if (!mesh.radiance)
             document.root().fail("this mesh has no emitter");
         if (!std::visit([](const auto &shape) { return in_unit_square(shape); }, mesh.shape))

@@ -59,13 +59,14 @@ void check_range(const Properties &properties, const Parameter &parameter, doubl
                      fmt::format("must be {}: {}", text_of(parameter), parameter.meaning));
 }
 
-Color parse_area_emitter(const XmlNode &node, const ParseContext &context) {
+void parse_area_emitter(const XmlNode &node, const ParseContext &context, Mesh &mesh) {
     type_in(node, "mesh");
     Properties properties(node, context);
     const Color color = properties.required(properties.color("radiance"), "radiance");
     properties.check(*std::min_element(color.begin(), color.end()) >= 0, "radiance", "must not be negative");
+    mesh.radiance = color;
+    mesh.emits_on_both_sides = properties.boolean("twosided").value_or(false);
     properties.finish();
-    return color;
 }
 
 Light parse_scene_emitter(const XmlNode &node, const ParseContext &context) {

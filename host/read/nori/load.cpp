@@ -48,8 +48,9 @@ SceneDescription parse_scene(const XmlNode &node, const ParseContext &context) {
     if (auto sampler = properties.child("sampler"))
         parse_sampler(*sampler, context, scene);
     scene.camera = parse_camera(*camera, context);
-    for (const XmlNode &mesh : properties.children("mesh"))
-        scene.meshes.push_back(parse_mesh(mesh, context));
+    for (const XmlNode &child : properties.children("mesh"))
+        for (Mesh &mesh : parse_meshes(child, context))
+            scene.meshes.push_back(std::move(mesh));
     for (const XmlNode &emitter : properties.children("emitter"))
         scene.lights.push_back(parse_scene_emitter(emitter, context));
     properties.finish();

@@ -8,13 +8,14 @@ namespace opal {
 
 Bsdf parse_bsdf(const XmlNode &node, const ParseContext &context);
 
-Color parse_area_emitter(const XmlNode &node, const ParseContext &context);  // a child of a mesh; returns its radiance
-Light parse_scene_emitter(const XmlNode &node, const ParseContext &context); // a child of the scene
+void parse_area_emitter(const XmlNode &node, const ParseContext &context, Mesh &mesh); // a child of the mesh
+Light parse_scene_emitter(const XmlNode &node, const ParseContext &context);           // a child of the scene
 
 // Error at the property if its value, in single precision as the device sees it, is none that the parameter may have.
 void check_range(const Properties &properties, const Parameter &parameter, double value);
 
-Mesh parse_mesh(const XmlNode &node, const ParseContext &context);
+// A mesh; several, one a material, where it asks for the materials of its OBJ file.
+std::vector<Mesh> parse_meshes(const XmlNode &node, const ParseContext &context);
 
 Filter parse_filter(const XmlNode &node, const ParseContext &context);
 Camera parse_camera(const XmlNode &node, const ParseContext &context);

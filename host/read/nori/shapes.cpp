@@ -1,7 +1,7 @@
 // Parsers of meshes: triangles of an OBJ file, and parallelograms.
 #include "base/error.h"
 #include "read/nori/parsers.h"
-#include "read/obj.h"
+#include "read/obj_materials.h"
 
 #include <algorithm>
 
@@ -20,52 +20,72 @@ std::filesystem::path find_file(Properties &properties, std::string name) {
     properties.fail_at("filename", "no such file: " + beside.string() + ", nor " + name + " in the current folder");
 }
 
-void parse_obj(Properties &properties, const Transform &to_world, Mesh &mesh) {
+// What a mesh has but for its shape.
+struct MeshStart {
+    Mesh mesh;
+    Transform to_world;
+    ObjMaterialOptions own;
+};
+
+std::vector<Mesh> parse_obj(Properties &properties, MeshStart start) {
     std::string name = properties.required(properties.string("filename"), "filename");
-    if (mesh.name.empty())
-        mesh.name = name;
-    std::filesystem::path file = find_file(properties, name);
+    const bool with_materials = properties.boolean("materials").value_or(false);
+    if (start.mesh.name.empty())
+        start.mesh.name = name;
+    const std::filesystem::path file = find_file(properties, name);
     try {
-        mesh.shape = read_obj(file, to_world);
+        ObjFile obj = read_obj(file, start.to_world);
+        if (with_materials)
+            return meshes_by_material(std::move(obj), file, start.mesh, start.own);
+        if (!start.own.own_bsdf)
+            warn_of_unused_materials(obj, file);
+        start.mesh.shape = std::move(obj.mesh);
     } catch (const Error &error) { // the place in the OBJ file comes first
-        throw Error(std::string(error.what()) + " (the mesh at " + mesh.place.text() + ")");
+        throw Error(std::string(error.what()) + " (the mesh at " + start.mesh.place.text() + ")");
     }
+    return {std::move(start.mesh)};
 }
 
-void parse_parallelogram(Properties &properties, const Transform &to_world, Mesh &mesh) {
+std::vector<Mesh> parse_parallelogram(Properties &properties, MeshStart start) {
     Parallelogram shape;
     shape.origin = properties.required(properties.point("origin"), "origin");
     shape.u = properties.required(properties.vector("u"), "u");
     shape.v = properties.required(properties.vector("v"), "v");
-    shape = shape.moved(to_world);
+    shape = shape.moved(start.to_world);
     if (!(length(cross(shape.u, shape.v)) > 1e-12 * length(shape.u) * length(shape.v)))
         properties.fail("the parallelogram has no area: u and v are zero or parallel");
-    mesh.shape = shape;
+    start.mesh.shape = shape;
+    return {std::move(start.mesh)};
 }
 
 struct ShapeType {
     std::string name;
-    void (*parse)(Properties &, const Transform &, Mesh &);
+    std::vector<Mesh> (*parse)(Properties &, MeshStart);
 };
 
 const std::vector<ShapeType> shape_types = {{"obj", parse_obj}, {"parallelogram", parse_parallelogram}};
 
 } // namespace
 
-Mesh parse_mesh(const XmlNode &node, const ParseContext &context) {
+std::vector<Mesh> parse_meshes(const XmlNode &node, const ParseContext &context) {
     const ShapeType &type = row_of_type(node, shape_types);
     Properties properties(node, context);
-    Mesh mesh;
+    MeshStart start;
+    Mesh &mesh = start.mesh;
     mesh.place = node.place();
     mesh.name = properties.string("name").value_or("");
-    Transform to_world = properties.transform("toWorld").value_or(Transform());
-    if (auto bsdf = properties.child("bsdf"))
+    start.to_world = properties.transform("toWorld").value_or(Transform());
+    if (auto bsdf = properties.child("bsdf")) {
         mesh.bsdf = parse_bsdf(*bsdf, context);
-    if (auto emitter = properties.child("emitter"))
-        mesh.radiance = parse_area_emitter(*emitter, context);
-    type.parse(properties, to_world, mesh);
+        start.own.own_bsdf = true;
+    }
+    if (auto emitter = properties.child("emitter")) {
+        parse_area_emitter(*emitter, context, mesh);
+        start.own.own_emitter = true;
+    }
+    std::vector<Mesh> meshes = type.parse(properties, std::move(start));
     properties.finish();
-    return mesh;
+    return meshes;
 }
 
 } // namespace opal

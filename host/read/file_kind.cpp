@@ -1,0 +1,248 @@
+#include "read/file_kind.h"
+
+#include "base/error.h"
+#include "base/read_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+namespace opal {
+
+namespace {
+
+using namespace std::literals;
+
+const std::string by_assimp = "assimp export FILE NEW.obj (Debian: assimp-utils), or import it into Blender and export "
+                              "Wavefront (.obj)";
+const std::string by_blender = "open it in Blender and export Wavefront (.obj)";
+const std::string no_text_format = "Opal reads Nori's scenes (.xml) and Wavefront meshes (.obj)";
+
+// Kinds that begin with bytes of their own.
+struct Magic {
+    std::string_view bytes;
+    std::string name, conversion;
+    FileKind kind = FileKind::other;
+};
+const std::vector<Magic> magics = {
+    {"ply\n", "a PLY mesh", by_assimp},
+    {"ply\r", "a PLY mesh", by_assimp},
+    {"glTF", "a binary glTF scene", by_assimp},
+    {"Kaydara FBX Binary", "an FBX scene", by_assimp},
+    {"; FBX", "an FBX scene", by_assimp},
+    {"BLENDER", "a Blender file", by_blender},
+    {"OFF\n", "an OFF mesh", by_assimp},
+    {"OFF\r", "an OFF mesh", by_assimp},
+    {"#VRML", "a VRML scene", by_assimp},
+    {"#usda", "a USD scene", by_blender},
+    {"PXR-USDC", "a USD scene", by_blender},
+    {"Ogawa", "an Alembic scene", by_blender},
+    {"\x1c\x04"sv, "a Mitsuba .serialized mesh", "load it in Mitsuba 3 and write it with Mesh.write_ply, then as PLY"},
+    {"\x1f\x8b"sv, "compressed by gzip", "gzip -dc FILE > NEW"},
+    {"PK\x03\x04"sv, "a zip archive", "unzip FILE"},
+    {"BZh", "compressed by bzip2", "bzip2 -dc FILE > NEW"},
+    {"\xfd"
+     "7zXZ",
+     "compressed by xz", "xz -dc FILE > NEW"},
+    {"\x28\xb5\x2f\xfd", "compressed by zstd", "zstd -dc FILE > NEW; Blender's own files are: " + by_blender},
+    {"7z\xbc\xaf", "a 7z archive", "7z x FILE"},
+    {"\x89PNG", "a PNG image", ""},
+    {"\xff\xd8\xff", "a JPEG image", ""},
+    {"\x76\x2f\x31\x01", "an OpenEXR image", ""},
+    {"#?RADIANCE", "a Radiance HDR image", ""},
+    {"%PDF", "a PDF document", ""},
+    {"version https://git-lfs", "a pointer that stands for the real file, by Git LFS", "git lfs pull"},
+};
+
+// A binary STL has no magic: its size follows from its count of triangles.
+bool is_binary_stl(std::string_view bytes) {
+    constexpr size_t header = 80, triangle = 50;
+    uint32_t count = 0;
+    if (bytes.size() < header + sizeof count)
+        return false;
+    std::memcpy(&count, bytes.data() + header, sizeof count);
+    return count > 0 && bytes.size() == header + sizeof count + triangle * size_t(count);
+}
+
+std::string unicode_name(std::string_view bytes) {
+    if (bytes.starts_with("\xff\xfe\0\0"sv) || bytes.starts_with("\0\0\xfe\xff"sv))
+        return "UTF-32";
+    if (bytes.starts_with("\xff\xfe"sv) || bytes.starts_with("\xfe\xff"sv))
+        return "UTF-16";
+    // Without a mark: text of ASCII letters has a zero in every second byte.
+    const std::string_view start = bytes.substr(0, 64);
+    std::array<size_t, 2> zeros{};
+    for (size_t i = 0; i < start.size(); i++)
+        zeros[i % 2] += start[i] == '\0';
+    if (start.size() >= 4 && zeros[1] == start.size() / 2 && zeros[0] == 0)
+        return "UTF-16LE";
+    if (start.size() >= 4 && zeros[0] == start.size() / 2 && zeros[1] == 0)
+        return "UTF-16BE";
+    return "";
+}
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
+std::string_view without_blanks(std::string_view text) {
+    text.remove_prefix(size_t(std::find_if_not(text.begin(), text.end(), is_blank) - text.begin()));
+    return text;
+}
+
+std::string_view first_word(std::string_view text) {
+    return text.substr(0, size_t(std::find_if(text.begin(), text.end(), is_blank) - text.begin()));
+}
+
+bool contains(std::string_view text, std::string_view part) { return text.find(part) != text.npos; }
+
+// The text from the '<' of the root element on; empty if there is none.
+std::string_view xml_root(std::string_view text) {
+    while (true) {
+        text = without_blanks(text);
+        std::string_view end;
+        if (text.starts_with("<?"))
+            end = "?>";
+        else if (text.starts_with("<!--"))
+            end = "-->";
+        else if (text.starts_with("<!"))
+            end = ">";
+        else
+            return text.starts_with("<") ? text : ""sv;
+        const size_t at = text.find(end);
+        if (at == text.npos)
+            return "";
+        text.remove_prefix(at + end.size());
+    }
+}
+
+// Nori's forks have some of Mitsuba's tags, and some scenes of Nori a version: both together are Mitsuba's.
+bool is_mitsuba(std::string_view root) {
+    const std::string_view tag = root.substr(0, root.find('>'));
+    if (!contains(tag, "version"))
+        return false;
+    for (std::string_view own : {"<shape", "<film", "<default", "<include", "<rgb", "<spectrum", "to_world"})
+        if (contains(root, own))
+            return true;
+    return false;
+}
+
+FileKindRow kind_of_xml(std::string_view text) {
+    const std::string_view root = xml_root(text);
+    if (root.empty())
+        return contains(text.substr(0, 1024), "<html") || contains(text.substr(0, 1024), "<HTML")
+                   ? FileKindRow{FileKind::other, "a web page", "download the file itself ('Raw')"}
+                   : FileKindRow{};
+    const auto name_end =
+        std::find_if(root.begin() + 1, root.end(), [](char c) { return is_blank(c) || c == '>' || c == '/'; });
+    const std::string_view tag(root.data() + 1, size_t(name_end - root.begin()) - 1);
+    if (tag == "scene" && is_mitsuba(root))
+        return {FileKind::mitsuba_scene, "a scene of Mitsuba",
+                "there is no converter: Opal reads Nori's scenes, scenes/ has some to start from"};
+    if (tag == "scene" || tag == "test")
+        return {FileKind::scene, "a scene", "render it: opal FILE"};
+    if (tag == "COLLADA")
+        return {FileKind::other, "a COLLADA scene", by_assimp};
+    if (tag == "X3D")
+        return {FileKind::other, "an X3D scene", by_assimp};
+    if (tag == "amf")
+        return {FileKind::other, "an AMF mesh", by_assimp};
+    if (tag == "html" || tag == "HTML")
+        return {FileKind::other, "a web page", "download the file itself ('Raw')"};
+    if (tag == "svg")
+        return {FileKind::other, "an SVG drawing", ""};
+    return {}; // the XML's reader says which roots there are
+}
+
+// The first statement that is no comment; a '#' begins one.
+std::string_view first_statement(std::string_view text) {
+    for (text = without_blanks(text); text.starts_with("#"); text = without_blanks(text))
+        text.remove_prefix(std::min(text.find('\n'), text.size()));
+    return first_word(text);
+}
+
+FileKindRow kind_of_text(std::string_view text) {
+    const std::string_view start = without_blanks(text.substr(0, 1 << 16));
+    if (start.starts_with("<"))
+        return kind_of_xml(text);
+    if (start.starts_with("{"))
+        return contains(text, "\"asset\"") && contains(text, "\"version\"")
+                   ? FileKindRow{FileKind::other, "a glTF scene", by_assimp}
+                   : FileKindRow{FileKind::text, "JSON", no_text_format};
+    if (first_word(start) == "solid" && contains(start, "facet"))
+        return {FileKind::other, "an STL mesh", by_assimp};
+    const std::string_view statement = first_statement(start);
+    if (statement == "newmtl")
+        return {FileKind::mtl, "a material library (MTL)", "the OBJ file names it by mtllib"};
+    for (std::string_view own : {"v", "vn", "vt", "vp", "f", "o", "g", "s", "mtllib", "usemtl"})
+        if (statement == own)
+            return {FileKind::obj, "a Wavefront OBJ mesh", "opal scene-for FILE > NEW.xml writes a scene around it"};
+    for (std::string_view pbrt : {"LookAt", "WorldBegin", "Film", "Sampler", "Integrator", "Camera", "Scale"})
+        if (statement == pbrt)
+            return {FileKind::text, "a scene of PBRT", no_text_format};
+    return {};
+}
+
+const char *name_of(FileKind wanted) {
+    switch (wanted) {
+    case FileKind::obj:
+        return "an OBJ file";
+    case FileKind::mtl:
+        return "a material library (MTL)";
+    default:
+        return "a scene";
+    }
+}
+
+// An old Macintosh's line end; carriage returns before a line feed, or at the end of the file, are none.
+size_t lone_carriage_return(std::string_view text) {
+    for (size_t at = text.find('\r'); at != text.npos; at = text.find('\r', at)) {
+        const size_t next = text.find_first_not_of('\r', at);
+        if (next == text.npos)
+            break;
+        if (text[next] != '\n')
+            return at;
+        at = next;
+    }
+    return text.npos;
+}
+
+} // namespace
+
+FileKindRow kind_of(std::string_view bytes) {
+    if (const std::string unicode = unicode_name(bytes); !unicode.empty())
+        return {FileKind::text, unicode + " text", fmt::format("iconv -f {} -t UTF-8 FILE > NEW", unicode)};
+    if (bytes.starts_with("\xef\xbb\xbf"))
+        bytes.remove_prefix(3);
+    for (const Magic &magic : magics)
+        if (bytes.starts_with(magic.bytes))
+            return {magic.kind, magic.name, magic.conversion};
+    if (is_binary_stl(bytes))
+        return {FileKind::other, "a binary STL mesh", by_assimp};
+    if (contains(bytes.substr(0, 4096), "\0"sv))
+        return {FileKind::other, "a binary file", no_text_format};
+    return kind_of_text(bytes);
+}
+
+std::string wrong_kind_text(const std::filesystem::path &file, const FileKindRow &found, FileKind wanted) {
+    return fmt::format("{}: is {}, not {}{}{}", file.string(), found.name, name_of(wanted),
+                       found.conversion.empty() ? "" : "; ", found.conversion);
+}
+
+std::string read_text_file(const std::filesystem::path &file, FileKind wanted) {
+    std::string text = read_file(file);
+    const FileKindRow found = kind_of(text);
+    if (found.kind != FileKind::unknown && found.kind != wanted)
+        throw Error(wrong_kind_text(file, found, wanted));
+    if (text.starts_with("\xef\xbb\xbf"))
+        text.erase(0, 3);
+    if (lone_carriage_return(text) != text.npos)
+        throw Error(fmt::format("{}: lines end with a carriage return alone, as on old Macintoshes; "
+                                "tr '\\r' '\\n' < FILE > NEW",
+                                file.string()));
+    return text;
+}
+
+} // namespace opal

@@ -1,0 +1,195 @@
+// What MTL's materials mean, and what Opal renders of them. Blender's exporter was measured (5.0.1); what it makes of
+// Ns, Ka and illum holds for its files alone.
+#include "read/mtl.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace opal {
+
+namespace {
+
+constexpr double max_exponent = 1e5; // of a Phong lobe in the place of a smooth metal: about a mirror
+
+double grey_of(const Color &c) { return (c[0] + c[1] + c[2]) / 3; }
+double largest_of(const Color &c) { return *std::max_element(c.begin(), c.end()); }
+
+// Statements of a material with defaults.
+class Statements {
+public:
+    explicit Statements(const MtlMaterial &material) : material_(material) {}
+
+    bool has(const char *name) const { return material_.colors.contains(name) || material_.numbers.contains(name); }
+    bool has_texture(const char *name) const { return material_.textures.contains(name); }
+    Color color(const char *name, double grey) const {
+        const auto found = material_.colors.find(name);
+        return found == material_.colors.end() ? Color{grey, grey, grey} : found->second;
+    }
+    double number(const char *name, double otherwise) const {
+        const auto found = material_.numbers.find(name);
+        return found == material_.numbers.end() ? otherwise : found->second;
+    }
+
+private:
+    const MtlMaterial &material_;
+};
+
+double square(double x) { return x * x; }
+
+// Blender writes Ns = 1000 (1 - r)^2 and, with its PBR extensions, r itself.
+double blender_roughness(const Statements &of) {
+    return of.has("pr") ? of.number("pr", 0.5) : 1 - std::sqrt(std::min(of.number("ns", 250), 1000.0) / 1000);
+}
+
+void add_blender_layers(const Statements &of, PrincipledMaterial &material) {
+    material.roughness = blender_roughness(of);
+    const double illum = of.number("illum", 2);
+    const bool is_metal = illum == 3 || (illum == 6 && material.opacity < 1);
+    material.metallic = of.has("pm") ? of.number("pm", 0) : is_metal ? grey_of(of.color("ka", 0)) : 0;
+    const double level = grey_of(of.color("ks", 0));
+    material.f0 = 2 * level * square((material.ior - 1) / (material.ior + 1));
+    material.transmission = grey_of(of.color("tf", 0));
+    material.coat = of.number("pc", 0) / 4;
+}
+
+void add_other_layers(const Statements &of, PrincipledMaterial &material) {
+    const double illum = of.number("illum", 2);
+    const Color specular = of.color("ks", 0);
+    material.metallic = of.number("pm", 0);
+    if (of.has("pr")) {
+        material.roughness = of.number("pr", 0.5);
+        material.f0 = square((material.ior - 1) / (material.ior + 1));
+    } else if (of.number("ns", 0) > 0 && largest_of(specular) > 0 && illum != 0 && illum != 1) {
+        material.phong = specular;
+        material.phong_exponent = of.number("ns", 0);
+        material.roughness = std::pow(2 / (material.phong_exponent + 2), 0.25); // alpha is sqrt(2 / (Ns + 2))
+    }
+    const bool says_glass = illum == 4 || illum == 6 || illum == 7 || illum == 9;
+    if (of.has("tf") && (says_glass || of.has("pr")))
+        material.transmission = grey_of(of.color("tf", 0));
+    material.coat = of.number("pc", 0);
+}
+
+Bsdf twosided(const Bsdf &base) {
+    Bsdf bsdf = bsdf_twosided_record{};
+    bsdf.children.push_back(base);
+    return bsdf;
+}
+
+ColorParameter parameter_of(const Color &c) { return {c[0], c[1], c[2]}; }
+Color scaled(const Color &c, double by) { return {c[0] * by, c[1] * by, c[2] * by}; }
+
+Bsdf diffuse_of(const Color &albedo) {
+    bsdf_diffuse_record diffuse;
+    diffuse.albedo = parameter_of(albedo);
+    return diffuse;
+}
+
+// A diffuse part and a lobe, whose shares follow from their reflectances: each stays what it is, at most 1 in all.
+Bsdf phong_of(const Color &diffuse, Color specular, double exponent, std::vector<std::string> &lacking) {
+    const double kd = largest_of(diffuse);
+    if (const double rest = 1 - std::min(kd, 1.0), ks = largest_of(specular); ks > rest) {
+        lacking.push_back(
+            fmt::format("Ks {:g} beside Kd {:g}, which reflect more than all light: Ks becomes {:g}", ks, kd, rest));
+        specular = scaled(specular, rest / ks);
+    }
+    const double ks = largest_of(specular);
+    if (ks == 0)
+        return diffuse_of(diffuse);
+    bsdf_phong_record phong;
+    const double share = kd / (kd + ks);
+    phong.pd = share;
+    phong.kd = parameter_of(share > 0 ? scaled(diffuse, 1 / share) : Color{});
+    phong.ks = parameter_of(scaled(specular, 1 / (1 - share)));
+    phong.n = exponent;
+    return phong;
+}
+
+// Clear layer over a diffuse base: the index of refraction gives f0 against air of index 1.
+Bsdf microfacet_of(const Color &base, double f0, double roughness) {
+    const double root = std::sqrt(std::min(f0, 0.99));
+    bsdf_microfacet_record microfacet;
+    microfacet.kd = parameter_of(base);
+    microfacet.alpha = square(roughness);
+    microfacet.int_ior = (1 + root) / (1 - root);
+    microfacet.ext_ior = 1;
+    return microfacet;
+}
+
+// A metal as Opal has it today: a mirror, or a Phong lobe of its colour as wide as microfacets of that roughness, and
+// for a share of metal the diffuse base beside it.
+Bsdf metal_of(const PrincipledMaterial &material, std::vector<std::string> &lacking) {
+    const bool is_white = *std::min_element(material.base.begin(), material.base.end()) >= 1;
+    if (material.metallic >= 1 && material.roughness == 0 && is_white)
+        return bsdf_mirror_record{};
+    lacking.push_back("metal, which becomes a Phong lobe of its colour");
+    const double alpha = square(material.roughness);
+    const double exponent = alpha > 0 ? std::min(2 / square(alpha) - 2, max_exponent) : max_exponent;
+    return phong_of(scaled(material.base, 1 - std::min(material.metallic, 1.0)),
+                    scaled(material.base, std::min(material.metallic, 1.0)), std::max(exponent, 0.0), lacking);
+}
+
+Bsdf bsdf_of(const PrincipledMaterial &material, std::vector<std::string> &lacking) {
+    if (material.transmission > 0.5) {
+        if (material.roughness > 0)
+            lacking.push_back(fmt::format("roughness {:g} of glass", material.roughness));
+        bsdf_dielectric_record glass;
+        glass.int_ior = material.ior;
+        glass.ext_ior = 1;
+        return glass;
+    }
+    if (material.transmission > 0)
+        lacking.push_back(fmt::format("transmission {:g}", material.transmission));
+    if (material.metallic > 0)
+        return twosided(metal_of(material, lacking));
+    if (largest_of(material.phong) > 0)
+        return twosided(phong_of(material.base, material.phong, material.phong_exponent, lacking));
+    if (material.f0 > 0 && largest_of(material.base) < 1)
+        return twosided(microfacet_of(material.base, material.f0, material.roughness));
+    return twosided(diffuse_of(material.base));
+}
+
+} // namespace
+
+PrincipledMaterial principled_of(const MtlMaterial &written) {
+    const Statements of(written);
+    PrincipledMaterial material;
+    material.base = of.color("kd", of.has_texture("map_kd") ? 1 : 0.8);
+    material.ior = of.number("ni", 1.5);
+    material.opacity = of.number("d", 1);
+    material.emission = of.color("ke", of.has_texture("map_ke") ? 1 : 0);
+    material.sheen = of.number("ps", 0);
+    material.anisotropic = of.number("aniso", 0);
+    if (written.by_blender)
+        add_blender_layers(of, material);
+    else
+        add_other_layers(of, material);
+    return material;
+}
+
+SurfaceOfMaterial surface_of(const MtlMaterial &written) {
+    const PrincipledMaterial material = principled_of(written);
+    SurfaceOfMaterial surface;
+    surface.bsdf = bsdf_of(material, surface.lacking);
+    surface.bsdf.place = written.place;
+    for (Bsdf &child : surface.bsdf.children)
+        child.place = written.place;
+    if (largest_of(material.emission) > 0)
+        surface.radiance = material.emission;
+    surface.is_invisible = material.opacity == 0;
+    if (material.opacity > 0 && material.opacity < 1)
+        surface.lacking.push_back(fmt::format("opacity {:g}, which becomes 1", material.opacity));
+    if (material.sheen > 0)
+        surface.lacking.push_back("sheen");
+    if (material.coat > 0)
+        surface.lacking.push_back(fmt::format("coat {:g}", material.coat));
+    if (material.anisotropic != 0)
+        surface.lacking.push_back("anisotropy");
+    for (const auto &[statement, texture] : written.textures)
+        surface.lacking.push_back(fmt::format("{} {}", statement, texture.file));
+    return surface;
+}
+
+} // namespace opal

@@ -1,0 +1,148 @@
+#include "read/obj_materials.h"
+
+#include "base/log.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace opal {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Materials = std::map<std::string, MtlMaterial>;
+
+fs::path beside(const fs::path &obj, std::string name) {
+    std::replace(name.begin(), name.end(), '\\', '/');
+    return obj.parent_path() / name;
+}
+
+bool is_file(const fs::path &path) {
+    std::error_code ignored;
+    return fs::is_regular_file(path, ignored);
+}
+
+// The files of a statement `mtllib`: its whole rest is one name, which may hold blanks; where there is no such file,
+// its words are names.
+std::vector<fs::path> files_of(const ObjLibrary &library, const fs::path &obj) {
+    if (const fs::path whole = beside(obj, library.names); is_file(whole))
+        return {whole};
+    std::vector<fs::path> files;
+    const std::string blanks = " \t";
+    for (size_t at = library.names.find_first_not_of(blanks); at != std::string::npos;) {
+        const size_t end = std::min(library.names.find_first_of(blanks, at), library.names.size());
+        const std::string word = library.names.substr(at, end - at);
+        if (const fs::path file = beside(obj, word); is_file(file))
+            files.push_back(file);
+        else
+            warn(fmt::format("{}: no such material library: {}", library.place.text(), file.string()));
+        at = library.names.find_first_not_of(blanks, end);
+    }
+    return files;
+}
+
+Materials read_libraries(const ObjFile &obj, const fs::path &file) {
+    Materials materials;
+    std::set<fs::path> known; // a library may be named before each object
+    for (const ObjLibrary &library : obj.libraries)
+        for (const fs::path &path : files_of(library, file))
+            if (known.insert(path).second)
+                for (MtlMaterial &material : read_mtl(path))
+                    materials.try_emplace(material.name, material);
+    return materials;
+}
+
+// The material of that name, or without the comment that a name seems to end with; null if there is none.
+const MtlMaterial *find_material(const Materials &materials, const std::string &name) {
+    for (std::string tried = name;;) {
+        if (const auto found = materials.find(tried); found != materials.end())
+            return &found->second;
+        const size_t comment = tried.rfind(" #");
+        if (comment == std::string::npos)
+            return nullptr;
+        tried.erase(std::min(tried.find_last_not_of(' ', comment) + 1, comment));
+    }
+}
+
+// The triangles of each material, by index; those before the first `usemtl` have none.
+struct Part {
+    unsigned material = OPAL_NONE;
+    std::vector<size_t> triangles;
+};
+
+std::vector<Part> parts_of(const ObjFile &obj) {
+    std::vector<Part> parts;
+    const size_t count = obj.mesh.triangles.size();
+    for (size_t i = 0; i < obj.material_runs.size(); i++) {
+        const ObjMaterialRun run = obj.material_runs[i];
+        const size_t end = i + 1 < obj.material_runs.size() ? obj.material_runs[i + 1].first : count;
+        if (run.first == end)
+            continue;
+        auto part = std::find_if(parts.begin(), parts.end(), [&](const Part &p) { return p.material == run.material; });
+        if (part == parts.end())
+            part = parts.insert(parts.end(), {run.material, {}});
+        for (size_t triangle = run.first; triangle < end; triangle++)
+            part->triangles.push_back(triangle);
+    }
+    return parts;
+}
+
+void add_surface(const MtlMaterial &material, const ObjMaterialOptions &options, Mesh &mesh, bool &visible) {
+    const SurfaceOfMaterial surface = surface_of(material);
+    if (!surface.lacking.empty() && !options.own_bsdf)
+        warn(fmt::format("{}: material '{}': Opal does not render {}", material.place.text(), material.name,
+                         fmt::join(surface.lacking, ", ")));
+    visible = !surface.is_invisible || options.own_bsdf;
+    if (!options.own_bsdf)
+        mesh.bsdf = surface.bsdf;
+    if (!options.own_emitter && surface.radiance) {
+        mesh.radiance = surface.radiance;
+        mesh.emits_on_both_sides = true;
+    }
+}
+
+} // namespace
+
+std::vector<Mesh> meshes_by_material(ObjFile &&obj, const fs::path &file, const Mesh &mesh,
+                                     ObjMaterialOptions options) {
+    std::vector<Mesh> meshes;
+    const std::vector<Part> parts = parts_of(obj);
+    if (parts.empty()) { // no `usemtl`
+        meshes.push_back(mesh);
+        meshes.back().shape = std::move(obj.mesh);
+        return meshes;
+    }
+    const Materials materials = read_libraries(obj, file);
+    for (const Part &part : parts) {
+        Mesh own = mesh;
+        bool visible = true;
+        if (part.material != OPAL_NONE) {
+            const ObjMaterial &used = obj.materials[part.material];
+            own.name += ": " + used.name;
+            if (const MtlMaterial *material = find_material(materials, used.name))
+                add_surface(*material, options, own, visible);
+            else
+                warn(fmt::format("{}: no material '{}' in the libraries: its triangles are grey, diffuse ({})",
+                                 used.place.text(), used.name, part.triangles.size()));
+        }
+        if (!visible)
+            continue;
+        own.shape = parts.size() == 1 ? std::move(obj.mesh) : obj.mesh.part(part.triangles);
+        meshes.push_back(std::move(own));
+    }
+    return meshes;
+}
+
+void warn_of_unused_materials(const ObjFile &obj, const fs::path &file) {
+    if (obj.materials.empty())
+        return;
+    warn(
+        fmt::format("{}: {} material{} not used, as Nori ignores them; <boolean name=\"materials\" value=\"true\"/> in "
+                    "the <mesh> turns them on",
+                    file.string(), obj.materials.size(), obj.materials.size() == 1 ? " is" : "s are"));
+}
+
+} // namespace opal
