@@ -8,8 +8,9 @@ packages=(
     ocl-icd-opencl-dev opencl-headers opencl-clhpp-headers       # OpenCL's loader and headers
     pocl-opencl-icd                                              # an OpenCL device: the CPU
     libopenexr-dev libpng-dev libpugixml-dev                     # images and XML
+    libtinyobjloader-dev                                         # meshes
     libfmt-dev libcli11-dev nlohmann-json3-dev                   # text, command line, JSON
-    catch2 libtinyobjloader-dev                                  # tests
+    catch2                                                       # tests
     "$@"
 )
 

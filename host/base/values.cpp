@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 namespace opal {
@@ -56,6 +57,8 @@ double parse_number(std::string_view text) {
     std::errc error = read_all(text, value);
     if (error == std::errc::invalid_argument)
         throw Error(quoted(text) + " is not a number");
+    if (error == std::errc::result_out_of_range && std::abs(std::strtod(std::string(text).c_str(), nullptr)) < 1)
+        return 0; // too small, as 1e-400, not too large
     if (error != std::errc() || !(std::abs(value) <= std::numeric_limits<float>::max()))
         throw Error(quoted(text) + " is not a finite number in single precision");
     return value;

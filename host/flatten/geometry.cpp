@@ -33,6 +33,7 @@ public:
 
     TriangleSoup soup;
     std::size_t dropped = 0;
+    uint first_dropped = 0; // the mesh of the first of them
 
 private:
     const Flattening &flattening_;
@@ -76,7 +77,8 @@ private:
         for (uint &corner : corners)
             corner += first;
         if (!has_normal(soup.vertices[corners[0]], soup.vertices[corners[1]], soup.vertices[corners[2]])) {
-            dropped++;
+            if (dropped++ == 0)
+                first_dropped = mesh_;
             return;
         }
         soup.corners.push_back(corners);
@@ -130,9 +132,14 @@ TriangleSoup gather_primitives(const SceneDescription &description, const Flatte
     scene.triangles.reserve(triangles);
     for (uint mesh = 0; mesh < description.meshes.size(); mesh++)
         gatherer.add(description.meshes[mesh], mesh);
-    if (gatherer.dropped > 0)
-        warn(fmt::format("{} of {} triangles dropped: no area is left of them in single precision", gatherer.dropped,
-                         gatherer.soup.corners.size() + gatherer.dropped));
+    if (gatherer.dropped > 0) {
+        const Mesh &first = description.meshes[gatherer.first_dropped];
+        warn(fmt::format("{}{} of {} triangles dropped: no area is left of them in single precision, which rounds "
+                         "coordinates to {:.0e} of the scene's size; the first is one of {}",
+                         first.place.line ? first.place.text() + ": " : "", gatherer.dropped,
+                         gatherer.soup.corners.size() + gatherer.dropped, std::numeric_limits<float>::epsilon() / 2,
+                         first.name.empty() ? "a mesh without a name" : first.name));
+    }
     return std::move(gatherer.soup);
 }
 

@@ -188,7 +188,9 @@ SurfaceOfMaterial surface_of(const MtlMaterial &written) {
     if (material.anisotropic != 0)
         surface.lacking.push_back("anisotropy");
     for (const auto &[statement, texture] : written.textures)
-        surface.lacking.push_back(fmt::format("{} {}", statement, texture.file));
+        surface.lacking.push_back(
+            fmt::format("{} {}{}", statement, texture.file,
+                        statement == "map_ke" && written.by_blender ? ", whose strength Blender has not written" : ""));
     return surface;
 }
 

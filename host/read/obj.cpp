@@ -2,14 +2,19 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "base/values.h"
 #include "read/file_kind.h"
-#include "read/xml.h"
+#include "read/obj_statements.h"
 
 #include <fmt/format.h>
 
+#define TINYOBJLOADER_IMPLEMENTATION
+#define TINYOBJLOADER_USE_DOUBLE
+#include <tiny_obj_loader.h>
+
 #include <algorithm>
+#include <istream>
 #include <limits>
+#include <unordered_map>
 
 namespace opal {
 
@@ -17,264 +22,320 @@ namespace {
 
 constexpr unsigned none = OPAL_NONE;
 
-struct Face {
-    size_t first, count; // range of its corners
-    const char *statement;
-};
-
-// The contents of the file. Indices count from 0; `none`: not given.
-struct Contents {
-    std::string name;
-    std::string_view text;
-    const char *reading = nullptr; // the word at which an error happened
-    std::vector<Vec3> positions, normals;
-    size_t texture_count = 0;
-    unsigned largest_texture = 0; // the largest texture index of a face, and its corner
-    const char *largest_texture_corner = nullptr;
-    std::vector<TriangleMesh::Corner> corners;
-    std::vector<Face> faces;
-    std::vector<ObjMaterial> materials;
-    std::vector<std::pair<size_t, unsigned>> uses; // first face, material
-    std::vector<ObjLibrary> libraries;
-    size_t dropped = 0; // faces of fewer than three corners, triangles without area
-
-    [[noreturn]] void fail(const char *word, const std::string &message) const {
-        throw Error(place_in(name, text, word - text.data()).text() + ": " + message);
-    }
-};
-
-// Statements of the text: lines without comments, joined where they end with a backslash.
-class Statements {
-public:
-    explicit Statements(std::string_view text) : text_(text) {}
-
-    bool next(std::vector<std::string_view> &words) {
-        words.clear();
-        while (words.empty() && position_ < text_.size()) {
-            for (bool continued = true; continued;)
-                continued = add_line(words);
-        }
-        return !words.empty();
-    }
-
-private:
-    bool add_line(std::vector<std::string_view> &words) {
-        size_t end = std::min(text_.find('\n', position_), text_.size());
-        std::string_view row = text_.substr(position_, end - position_);
-        position_ = end + 1;
-        row = row.substr(0, row.find('#'));
-        size_t last = row.find_last_not_of(" \t\r");
-        bool continued = last != std::string_view::npos && row[last] == '\\' && position_ < text_.size();
-        if (continued)
-            row = row.substr(0, last);
-        // find_first_of would call memchr for every character.
-        const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-        for (auto start = std::find_if_not(row.begin(), row.end(), blank); start != row.end();) {
-            const auto stop = std::find_if(start, row.end(), blank);
-            words.emplace_back(start, stop);
-            start = std::find_if_not(stop, row.end(), blank);
-        }
-        return continued;
-    }
-
-    std::string_view text_;
-    size_t position_ = 0;
-};
-
-using Words = std::vector<std::string_view>;
-
-// Further numbers on the line, such as vertex colours, are ignored.
-Vec3 read_triple(Contents &obj, const Words &words) {
-    if (words.size() < 4)
-        throw Error("'" + std::string(words[0]) + "' needs three numbers");
-    double numbers[3];
-    for (size_t i = 0; i < 3; ++i) {
-        obj.reading = words[i + 1].data();
-        numbers[i] = parse_number(words[i + 1]);
-    }
-    return {numbers[0], numbers[1], numbers[2]};
+// How far rounding the coordinates to double may move the corners of a triangle.
+double rounding_of(const std::array<Vec3, 3> &triangle) {
+    double largest = 0;
+    for (const Vec3 &p : triangle)
+        largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    return 4 * std::numeric_limits<double>::epsilon() * largest;
 }
 
-// An index: counted from 1 or, where negative, backwards from the last element so far. Whether it is too large is known
-// only at the end of the file.
-unsigned read_index(std::string_view word, size_t count_so_far, const char *what) {
-    int index = parse_integer(word);
-    if (index == 0 || (index < 0 && size_t(-static_cast<long long>(index)) > count_so_far))
-        throw Error(std::string(what) + " index " + std::string(word) +
-                    " is out of range: " + std::to_string(count_so_far) + " so far");
-    return index > 0 ? unsigned(index) - 1 : unsigned(static_cast<long long>(count_so_far) + index);
-}
-
-// v, v/vt, v//vn or v/vt/vn.
-TriangleMesh::Corner read_corner(Contents &obj, std::string_view word) {
-    obj.reading = word.data();
-    std::string_view parts[3];
-    size_t count = 0;
-    for (std::string_view rest = word; count < 3; ++count) {
-        size_t slash = std::min(rest.find('/'), rest.size());
-        parts[count] = rest.substr(0, slash);
-        if (slash == rest.size())
-            break;
-        rest.remove_prefix(slash + 1);
-    }
-    if (count == 3)
-        throw Error("'" + std::string(word) + "' has more than vertex/texture/normal");
-    if (!parts[1].empty())
-        if (unsigned index = read_index(parts[1], obj.texture_count, "texture"); index >= obj.largest_texture) {
-            obj.largest_texture = index;
-            obj.largest_texture_corner = word.data();
-        }
-    return {read_index(parts[0], obj.positions.size(), "vertex"),
-            parts[2].empty() ? none : read_index(parts[2], obj.normals.size(), "normal")};
-}
-
-void read_face(Contents &obj, const Words &words) {
-    size_t first = obj.corners.size();
-    for (size_t i = 1; i < words.size(); ++i)
-        obj.corners.push_back(read_corner(obj, words[i]));
-    obj.faces.push_back({first, words.size() - 1, words[0].data()});
-}
-
-std::string rest_of_line(const Words &words) { return {words[1].data(), words.back().data() + words.back().size()}; }
-
-void use_material(Contents &obj, const Words &words) {
-    const std::string name = rest_of_line(words);
-    const auto known = std::find_if(obj.materials.begin(), obj.materials.end(),
-                                    [&](const ObjMaterial &material) { return material.name == name; });
-    obj.uses.push_back({obj.faces.size(), unsigned(known - obj.materials.begin())});
-    if (known == obj.materials.end())
-        obj.materials.push_back({name, place_in(obj.name, obj.text, obj.reading - obj.text.data())});
-}
-
-void read_statement(Contents &obj, const Words &words) {
-    obj.reading = words[0].data();
-    if (words[0] == "v")
-        obj.positions.push_back(read_triple(obj, words));
-    else if (words[0] == "vn")
-        obj.normals.push_back(read_triple(obj, words));
-    else if (words[0] == "vt")
-        ++obj.texture_count;
-    else if (words[0] == "f")
-        read_face(obj, words);
-    else if (words.size() > 1 && words[0] == "mtllib")
-        obj.libraries.push_back({rest_of_line(words), place_in(obj.name, obj.text, obj.reading - obj.text.data())});
-    else if (words.size() > 1 && words[0] == "usemtl")
-        use_material(obj, words);
-}
-
-void read_statements(Contents &obj) {
-    Statements statements(obj.text);
-    for (Words words; statements.next(words);)
-        try {
-            read_statement(obj, words);
-        } catch (const Error &error) {
-            obj.fail(obj.reading, error.what());
-        }
-}
-
-// Finds the word of a face's corner again, for an error message.
-const char *corner_word(const Contents &obj, const Face &face, size_t corner) {
-    Words words;
-    Statements(obj.text.substr(size_t(face.statement - obj.text.data()))).next(words);
-    return words[1 + corner - face.first].data();
-}
-
-std::string too_large(const char *what, unsigned index, size_t count) {
-    return fmt::format("{} index {} is out of range: the file has {}", what, index + 1ull, count);
-}
-
-// Texture coordinates are not kept: Opal has no textures.
-void check_indices(const Contents &obj) {
-    for (const Face &face : obj.faces)
-        for (size_t i = face.first; i < face.first + face.count; ++i) {
-            const auto [position, normal] = obj.corners[i];
-            if (position >= obj.positions.size())
-                obj.fail(corner_word(obj, face, i), too_large("vertex", position, obj.positions.size()));
-            if (normal != none && normal >= obj.normals.size())
-                obj.fail(corner_word(obj, face, i), too_large("normal", normal, obj.normals.size()));
-        }
-    if (obj.largest_texture_corner && obj.largest_texture >= obj.texture_count)
-        obj.fail(obj.largest_texture_corner, too_large("texture", obj.largest_texture, obj.texture_count));
-}
-
-// Replaces normals of length 0 by `none` in the corners.
-void to_world_space(Contents &obj, const Transform &to_world) {
-    for (Vec3 &p : obj.positions) {
-        p = to_world.point(p);
-        if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= std::numeric_limits<float>::max()))
-            throw Error(obj.name + ": vertex " + std::to_string(&p - obj.positions.data() + 1) +
-                        " is not finite in single precision once transformed");
-    }
-    for (Vec3 &n : obj.normals) {
-        n = to_world.normal(n);
-        double size = length(n);
-        n = size > 0 && std::isfinite(size) ? n * (1 / size) : Vec3{};
-    }
-    for (TriangleMesh::Corner &corner : obj.corners)
-        if (corner.normal != none && length(obj.normals[corner.normal]) == 0)
-            corner.normal = none;
-}
-
-// A triangle has no area if its height over the longest edge may be due to rounding the coordinates to double.
-bool has_area(const Contents &obj, const std::array<TriangleMesh::Corner, 3> &triangle) {
-    Vec3 p[3];
-    double largest = 0, longest2 = 0;
-    for (int i = 0; i < 3; ++i) {
-        p[i] = obj.positions[triangle[i].position];
-        largest = std::max({largest, std::abs(p[i].x), std::abs(p[i].y), std::abs(p[i].z)});
-    }
+// A triangle has no area if its height over the longest edge may be due to rounding.
+bool has_area(const std::array<Vec3, 3> &p, double rounding) {
+    double longest2 = 0;
     for (int i = 0; i < 3; ++i)
         longest2 = std::max(longest2, dot(p[(i + 1) % 3] - p[i], p[(i + 1) % 3] - p[i]));
     const Vec3 doubled_area = cross(p[1] - p[0], p[2] - p[0]);
-    const double rounding = 4 * std::numeric_limits<double>::epsilon() * largest;
     return dot(doubled_area, doubled_area) >
            rounding * rounding * longest2; // no overflow: squares of floats fit into doubles
 }
 
-// Triangles of a face with these corners.
-std::vector<std::array<unsigned, 3>> cut(const Contents &obj, const Face &face, const std::vector<Vec3> &outline) {
+// Statements of OBJ that hold no surface, or say how to show one, which Opal decides otherwise.
+constexpr std::string_view known_statements[] = {
+    "vp",       "cstype",   "deg",   "bmat",  "step",       "parm",      "trim", "hole",   "scrv",
+    "sp",       "end",      "con",   "s",     "mg",         "bevel",     "lod",  "maplib", "usemap",
+    "c_interp", "d_interp", "ctech", "stech", "shadow_obj", "trace_obj", "f"}; // `f`: without corners
+constexpr std::string_view flat_statements[] = {"l", "p", "curv", "curv2", "surf"};
+
+template <size_t Count> bool holds(const std::string_view (&list)[Count], std::string_view word) {
+    return std::find(std::begin(list), std::end(list), word) != std::end(list);
+}
+
+// Reads the statements by tinyobjloader's callbacks. Where a face names an element that comes later in the file, or
+// never, the faces are read again once all elements are known.
+class ObjReader : public ObjStatements {
+public:
+    ObjReader(const std::filesystem::path &file, std::string_view text, const Transform &to_world)
+        : ObjStatements(file.string(), text), file_(file.string()), to_world_(to_world) {}
+
+    void read();
+    ObjFile finish() &&; // needs the text no longer
+
+private:
+    struct FaceCorner {
+        unsigned position, normal, uv;
+    };
+    // What faces and the statements between them make; indices count from 0.
+    struct Faces {
+        TriangleMesh mesh; // with indices of all elements of the file; its own are filled in by finish
+        std::vector<ObjMaterialRun> runs;
+        unsigned material = none;
+        std::string object; // name of the present one
+        ObjTally infinite;  // elements `vn` and `vt` that are not finite
+        bool known = false; // some other statement of OBJ
+        ObjTally unknown, not_surfaces;
+        ObjTally dropped; // triangles without area, faces of one or two corners
+        std::string first_dropped;
+        double rounding = 0; // the largest of dropped triangles
+    };
+
+    static ObjReader &of(void *reader) { return *static_cast<ObjReader *>(reader); }
+    void read_statements();
+    void take_other() override;
+    void use_material();
+    void add_position();
+    void add_normal();
+    void add_uv();
+    void add_face(const tinyobj::index_t *corners, size_t corner_count);
+    FaceCorner read_corner(const tinyobj::index_t &written, std::string_view word);
+    unsigned index_of(int written, size_t so_far, size_t all, const char *what, std::string_view word);
+    std::vector<std::array<unsigned, 3>> cut(const std::vector<Vec3> &outline) const;
+    void add_triangle(size_t a, size_t b, size_t c);
+    void drop(double rounding);
+    void tell(const TriangleMesh &mesh) const;
+
+    std::string file_;
+    Transform to_world_;
+    std::vector<Vec3> positions_, normals_; // in world space; normals unit, or zero where they are missing
+    std::vector<std::array<float, 2>> uvs_; // NaN where they are missing
+    size_t positions_so_far_ = 0, normals_so_far_ = 0, uvs_so_far_ = 0;
+    bool complete_ = false;    // all elements are known
+    bool reads_again_ = false; // a face has named an element that is not
+    std::vector<ObjMaterial> materials_;
+    std::unordered_map<std::string, unsigned> material_index_;
+    std::vector<ObjLibrary> libraries_;
+    Faces faces_;
+
+    std::vector<FaceCorner> corners_; // of the present face
+    std::vector<Vec3> outline_;
+};
+
+void ObjReader::read() {
+    read_statements();
+    if (faces_.unknown.count > 0 && !faces_.known && positions_.empty() && normals_.empty() && uvs_.empty())
+        throw Error(fmt::format("{}: is no OBJ file: it has no statement of one, but '{}'", faces_.unknown.place.text(),
+                                faces_.unknown.word));
+    complete_ = true;
+    if (reads_again_)
+        read_statements();
+}
+
+void ObjReader::read_statements() {
+    rewind();
+    faces_ = {};
+    libraries_.clear();
+    positions_so_far_ = normals_so_far_ = uvs_so_far_ = 0;
+    tinyobj::callback_t callbacks;
+    // The numbers come from the pass in front: the library adds up digit by digit, and is wrong in the last bits of
+    // half of all numbers with six decimals.
+    callbacks.vertex_cb = [](void *data, double, double, double, double) { of(data).add_position(); };
+    callbacks.normal_cb = [](void *data, double, double, double) { of(data).add_normal(); };
+    callbacks.texcoord_cb = [](void *data, double, double, double) { of(data).add_uv(); };
+    callbacks.index_cb = [](void *data, tinyobj::index_t *corners, int count) {
+        of(data).add_face(corners, size_t(count));
+    };
+    std::istream stream(this);
+    stream.exceptions(std::ios::badbit); // so that an Error in the pass goes on
+    tinyobj::LoadObjWithCallback(stream, callbacks, this);
+}
+
+void ObjReader::take_other() {
+    const std::string_view kind = words()[0];
+    if (kind == "o" || kind == "g") {
+        faces_.object = rest();
+    } else if (kind == "usemtl") {
+        use_material();
+    } else if (kind == "mtllib") {
+        libraries_.push_back({rest(), place(kind)});
+    } else if (kind == "f") {
+        drop(0);
+    } else if (holds(flat_statements, kind)) {
+        count(faces_.not_surfaces, kind);
+    } else if (!holds(known_statements, kind)) {
+        count(faces_.unknown, kind);
+        return;
+    }
+    faces_.known = true;
+}
+
+void ObjReader::use_material() {
+    const auto [entry, is_new] = material_index_.try_emplace(rest(), unsigned(materials_.size()));
+    if (is_new)
+        materials_.push_back({entry->first, place(words()[0])});
+    if (faces_.runs.empty() && !faces_.mesh.triangles.empty())
+        faces_.runs.push_back({0, none});
+    faces_.material = entry->second;
+}
+
+void ObjReader::add_position() {
+    ++positions_so_far_;
+    if (complete_)
+        return;
+    const auto [x, y, z] = numbers();
+    const Vec3 p = to_world_.point({x, y, z});
+    if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= std::numeric_limits<float>::max()))
+        fail(words()[0],
+             fmt::format("vertex {} is not finite in single precision once transformed", positions_so_far_));
+    positions_.push_back(p);
+}
+
+void ObjReader::add_normal() {
+    ++normals_so_far_;
+    const auto [x, y, z] = numbers();
+    if (!std::isfinite(x + y + z))
+        count(faces_.infinite, words()[0]);
+    if (complete_)
+        return;
+    const Vec3 n = to_world_.normal({x, y, z});
+    const double size = length(n);
+    normals_.push_back(size > 0 && std::isfinite(size) ? n * (1 / size) : Vec3{});
+}
+
+void ObjReader::add_uv() {
+    ++uvs_so_far_;
+    const auto [u, v, ignored] = numbers();
+    if (!std::isfinite(u + v))
+        count(faces_.infinite, words()[0]);
+    if (!complete_)
+        uvs_.push_back({float(u), float(v)});
+}
+
+// written: counted from 1 or, where negative, backwards from the last element so far. all: elements known. The index
+// may be too large.
+unsigned ObjReader::index_of(int written, size_t so_far, size_t all, const char *what, std::string_view word) {
+    const long long index = written > 0 ? written - 1LL : static_cast<long long>(so_far) + written;
+    if (written == 0 || index < 0)
+        fail(word, fmt::format("{} index {} is out of range: {} so far", what, written, so_far));
+    reads_again_ |= size_t(index) >= all && !complete_;
+    return unsigned(index);
+}
+
+ObjReader::FaceCorner ObjReader::read_corner(const tinyobj::index_t &written, std::string_view word) {
+    FaceCorner corner{index_of(written.vertex_index, positions_so_far_, positions_.size(), "vertex", word), none, none};
+    if (written.normal_index != 0)
+        corner.normal = index_of(written.normal_index, normals_so_far_, normals_.size(), "normal", word);
+    if (written.texcoord_index != 0)
+        corner.uv = index_of(written.texcoord_index, uvs_so_far_, uvs_.size(), "texture", word);
+    if (!complete_)
+        return corner;
+    if (corner.position >= positions_.size())
+        fail(word, fmt::format("vertex index {} is out of range: the file has {}", corner.position + 1ull,
+                               positions_.size()));
+    for (auto [index, size] : {std::pair(&corner.normal, normals_.size()), std::pair(&corner.uv, uvs_.size())})
+        if (*index != none && *index >= size) {
+            count(absent, word);
+            *index = none;
+        }
+    return corner;
+}
+
+void ObjReader::add_face(const tinyobj::index_t *corners, size_t corner_count) {
+    if (reads_again_ && !complete_)
+        return;
+    corners_.clear();
+    for (size_t i = 0; i < corner_count; ++i)
+        corners_.push_back(read_corner(corners[i], words()[i + 1]));
+    if (reads_again_ && !complete_) {
+        faces_.mesh = {};
+        return;
+    }
+    for (FaceCorner &corner : corners_) {
+        if (corner.normal != none && dot(normals_[corner.normal], normals_[corner.normal]) == 0)
+            corner.normal = none;
+        if (corner.uv != none && !std::isfinite(uvs_[corner.uv][0] + uvs_[corner.uv][1]))
+            corner.uv = none;
+    }
+    if (corner_count < 3) {
+        drop(0);
+    } else if (corner_count == 3) {
+        add_triangle(0, 1, 2);
+    } else {
+        outline_.clear();
+        for (const FaceCorner &corner : corners_)
+            outline_.push_back(positions_[corner.position]);
+        for (auto [a, b, c] : cut(outline_))
+            add_triangle(a, b, c);
+    }
+}
+
+// Triangles of the present face, whose corners these are.
+std::vector<std::array<unsigned, 3>> ObjReader::cut(const std::vector<Vec3> &outline) const {
     try {
         return triangulate(outline);
     } catch (const Error &error) {
-        obj.fail(face.statement, error.what());
+        fail(words()[0], error.what());
     }
 }
 
-std::vector<std::array<TriangleMesh::Corner, 3>> make_triangles(Contents &obj, std::vector<ObjMaterialRun> &runs) {
-    std::vector<std::array<TriangleMesh::Corner, 3>> triangles;
-    std::vector<Vec3> outline;
-    unsigned material = none;
-    auto use = obj.uses.begin();
-    for (const Face &face : obj.faces) {
-        for (; use != obj.uses.end() && use->first <= size_t(&face - obj.faces.data()); ++use)
-            material = use->second;
-        const size_t first = triangles.size();
-        const TriangleMesh::Corner *corner = &obj.corners[face.first];
-        obj.dropped += face.count < 3;
-        outline.clear();
-        for (size_t i = 0; i < face.count; ++i)
-            outline.push_back(obj.positions[corner[i].position]);
-        for (auto [a, b, c] : cut(obj, face, outline)) {
-            std::array<TriangleMesh::Corner, 3> triangle = {corner[a], corner[b], corner[c]};
-            if (has_area(obj, triangle))
-                triangles.push_back(triangle);
-            else
-                ++obj.dropped;
-        }
-        if (!obj.uses.empty() && triangles.size() > first && (runs.empty() || runs.back().material != material))
-            runs.push_back({first, material});
-    }
-    return triangles;
+// a, b, c: corners of the present face
+void ObjReader::add_triangle(size_t a, size_t b, size_t c) {
+    const std::array<FaceCorner, 3> corners = {corners_[a], corners_[b], corners_[c]};
+    const std::array<Vec3, 3> p = {positions_[corners[0].position], positions_[corners[1].position],
+                                   positions_[corners[2].position]};
+    if (const double rounding = rounding_of(p); !has_area(p, rounding))
+        return drop(rounding);
+    TriangleMesh &mesh = faces_.mesh;
+    if (!materials_.empty() && (faces_.runs.empty() || faces_.runs.back().material != faces_.material))
+        faces_.runs.push_back({mesh.triangles.size(), faces_.material});
+    const bool has_uv = corners[0].uv != none || corners[1].uv != none || corners[2].uv != none;
+    if (has_uv && mesh.uv_corners.empty()) // those before have none
+        mesh.uv_corners.resize(mesh.triangles.size(), {none, none, none});
+    mesh.triangles.push_back({{{corners[0].position, corners[0].normal},
+                               {corners[1].position, corners[1].normal},
+                               {corners[2].position, corners[2].normal}}});
+    if (has_uv || !mesh.uv_corners.empty())
+        mesh.uv_corners.push_back({corners[0].uv, corners[1].uv, corners[2].uv});
 }
 
-// Keeps the entries that corners refer to by `member`, renumbered in the order of their first use.
-std::vector<Vec3> compact(const std::vector<Vec3> &all, std::vector<std::array<TriangleMesh::Corner, 3>> &triangles,
-                          unsigned TriangleMesh::Corner::*member) {
-    std::vector<Vec3> used;
+// rounding: that of the triangle; 0 for a face of too few corners
+void ObjReader::drop(double rounding) {
+    if (faces_.dropped.count == 0)
+        faces_.first_dropped = faces_.object;
+    count(faces_.dropped, words()[0]);
+    faces_.rounding = std::max(faces_.rounding, rounding);
+}
+
+// Prints notes and warnings about the whole file.
+void ObjReader::tell(const TriangleMesh &mesh) const {
+    // print: note or warn
+    const auto about = [](void (*print)(const std::string &), const ObjTally &tally, const std::string &text) {
+        if (tally.count > 0)
+            print(fmt::format("{}: {}{}", tally.place.text(), text,
+                              tally.count == 1 ? "" : fmt::format(" ({} in the file)", tally.count)));
+    };
+    about(note, further_numbers, "further numbers of a vertex, a weight or a colour, are ignored");
+    about(note, faces_.not_surfaces,
+          fmt::format("statement '{}' is ignored: only faces are read as surfaces", faces_.not_surfaces.word));
+    about(note, faces_.unknown, fmt::format("unknown statement '{}' is ignored", faces_.unknown.word));
+    about(warn, absent, "no normal or texture coordinate has this index: the corner has none");
+    about(warn, faces_.infinite, "a normal or texture coordinate is not finite: corners that name it have none");
+    std::string dropped;
+    if (faces_.dropped.count) {
+        const double size = mesh.extent().longest_side();
+        const std::string limit =
+            faces_.rounding > 0 && size > 0
+                ? fmt::format(", in height below {:.2g} of the mesh's size", faces_.rounding / size)
+                : "";
+        const std::string object =
+            faces_.first_dropped.empty() ? "" : fmt::format(", the first in '{}'", faces_.first_dropped);
+        dropped = fmt::format("dropped {} triangles without area{}{}", faces_.dropped.count, limit, object);
+    }
+    if (mesh.triangles.empty())
+        warn(fmt::format("{}: holds no triangles, so it is neither seen nor a light{}", file_,
+                         dropped.empty() ? "" : ": " + dropped));
+    else if (!dropped.empty())
+        warn(fmt::format("{}: {}, kept {}", faces_.dropped.place.text(), dropped, mesh.triangles.size()));
+}
+
+// Keeps the entries that `triangles` refer to by index_of(triangle, corner), renumbered in the order of their first
+// use.
+template <class Entry, class Triangles, class IndexOf>
+std::vector<Entry> compact(const std::vector<Entry> &all, Triangles &triangles, const IndexOf &index_of) {
+    std::vector<Entry> used;
     std::vector<unsigned> renumbered(all.size(), none);
     for (auto &triangle : triangles)
-        for (TriangleMesh::Corner &corner : triangle) {
-            unsigned &index = corner.*member;
+        for (auto &corner : triangle) {
+            unsigned &index = index_of(corner);
             if (index == none)
                 continue;
             if (renumbered[index] == none) {
@@ -286,29 +347,26 @@ std::vector<Vec3> compact(const std::vector<Vec3> &all, std::vector<std::array<T
     return used;
 }
 
+ObjFile ObjReader::finish() && {
+    using Corner = TriangleMesh::Corner;
+    TriangleMesh mesh = std::move(faces_.mesh);
+    mesh.positions = compact(positions_, mesh.triangles, [](Corner &corner) -> unsigned & { return corner.position; });
+    positions_ = {};
+    mesh.normals = compact(normals_, mesh.triangles, [](Corner &corner) -> unsigned & { return corner.normal; });
+    normals_ = {};
+    mesh.uvs = compact(uvs_, mesh.uv_corners, [](unsigned &index) -> unsigned & { return index; });
+    tell(mesh);
+    return {std::move(mesh), std::move(materials_), std::move(faces_.runs), std::move(libraries_)};
+}
+
 } // namespace
 
 ObjFile read_obj(const std::filesystem::path &file, const Transform &to_world) {
-    const std::string text = read_text_file(file, FileKind::obj);
-    Contents obj;
-    obj.name = file.string();
-    obj.text = text;
-    read_statements(obj);
-    check_indices(obj);
-    to_world_space(obj, to_world);
-    ObjFile read;
-    TriangleMesh &mesh = read.mesh;
-    mesh.triangles = make_triangles(obj, read.material_runs);
-    const std::string dropped = obj.dropped ? fmt::format("dropped {} triangles without area", obj.dropped) : "";
-    if (mesh.triangles.empty())
-        throw Error(obj.name + ": holds no triangles" + (obj.dropped ? ": " + dropped : ""));
-    if (obj.dropped > 0)
-        warn(fmt::format("{}: {}, kept {}", obj.name, dropped, mesh.triangles.size()));
-    mesh.positions = compact(obj.positions, mesh.triangles, &TriangleMesh::Corner::position);
-    mesh.normals = compact(obj.normals, mesh.triangles, &TriangleMesh::Corner::normal);
-    read.materials = std::move(obj.materials);
-    read.libraries = std::move(obj.libraries);
-    return read;
+    std::string text = read_text_file(file, FileKind::obj);
+    ObjReader reader(file, text, to_world);
+    reader.read();
+    text = {};
+    return std::move(reader).finish();
 }
 
 } // namespace opal

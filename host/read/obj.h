@@ -1,5 +1,5 @@
-// The reader of Wavefront OBJ files: v, vt, vn and f, with polygons of any size. host/README.md says why it is not
-// tinyobjloader, and a test holds it against tinyobjloader.
+// The reader of Wavefront OBJ files: tinyobjloader behind a strict pass over the text (read/obj_statements.h), with
+// polygons of any size. host/README.md says why, and a test shows which of the library's habits remain.
 #pragma once
 
 #include "scene/place.h"
@@ -36,9 +36,11 @@ struct ObjFile {
     std::vector<ObjLibrary> libraries;         // in the order of the file
 };
 
-// Reads a mesh; vertices and normals of the result are in world space. Triangles without area are dropped, with a
-// warning that counts them. Throws Error "file:line:col: ..." for a bad number or index, "file: ..." for a mesh without
-// triangles.
+// Reads a mesh; vertices and normals of the result are in world space. Triangles without area are dropped. Numbers are
+// rounded to double; those below its range are 0. Warns, with the place of the first and a count, of dropped triangles,
+// of a file without triangles, of `vt` and `vn` that are not finite, and of indices of them that are 0 or past the end:
+// corners that name these have none. Notes statements and numbers that it ignores. Throws Error "file:line:col: ..."
+// for any other bad number or index, and for text that has no statement of an OBJ file.
 ObjFile read_obj(const std::filesystem::path &file, const Transform &to_world);
 
 // Triangles of a polygon, as indices of corners, by ear clipping (Meisters 1975) in the plane of its Newell normal. A

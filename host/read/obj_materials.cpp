@@ -92,6 +92,8 @@ std::vector<Part> parts_of(const ObjFile &obj) {
 
 void add_surface(const MtlMaterial &material, const ObjMaterialOptions &options, Mesh &mesh, bool &visible) {
     const SurfaceOfMaterial surface = surface_of(material);
+    if (!material.colors.contains("kd") && !material.textures.contains("map_kd") && !options.own_bsdf)
+        note(fmt::format("{}: material '{}' has no Kd: 0.8 is taken", material.place.text(), material.name));
     if (!surface.lacking.empty() && !options.own_bsdf)
         warn(fmt::format("{}: material '{}': Opal does not render {}", material.place.text(), material.name,
                          fmt::join(surface.lacking, ", ")));

@@ -41,7 +41,8 @@ TriangleMesh TriangleMesh::moved(const Transform &by) const {
 
 TriangleMesh TriangleMesh::part(const std::vector<size_t> &indices) const {
     TriangleMesh part;
-    std::vector<unsigned> new_positions(positions.size(), OPAL_NONE), new_normals(normals.size(), OPAL_NONE);
+    std::vector<unsigned> new_positions(positions.size(), OPAL_NONE), new_normals(normals.size(), OPAL_NONE),
+        new_uvs(uvs.size(), OPAL_NONE);
     // Renumbers an index in the order of first use, and copies what it names.
     const auto renumber = [](unsigned &index, const auto &from, auto &to, std::vector<unsigned> &renumbered) {
         if (index == OPAL_NONE)
@@ -58,7 +59,12 @@ TriangleMesh TriangleMesh::part(const std::vector<size_t> &indices) const {
             renumber(corner.position, positions, part.positions, new_positions);
             renumber(corner.normal, normals, part.normals, new_normals);
         }
+        if (!uv_corners.empty())
+            for (unsigned &corner : part.uv_corners.emplace_back(uv_corners[index]))
+                renumber(corner, uvs, part.uvs, new_uvs);
     }
+    if (part.uvs.empty())
+        part.uv_corners.clear();
     return part;
 }
 

@@ -72,7 +72,7 @@ TEST_CASE_METHOD(MtlFixture, "d, Tr and a halo are one number; d counts", "[mtl]
     CHECK_THAT(told[0], Catch::Contains("contradict each other"));
 }
 
-TEST_CASE_METHOD(MtlFixture, "names are the rest of the line", "[mtl]") {
+TEST_CASE_METHOD(MtlFixture, "names of materials are the rest of the line", "[mtl]") {
     const auto materials = read("newmtl wall red  \nKd 1 0 0\nnewmtl stra\xc3\x9f"
                                 "e.001\r\nnewmtl paint #2\n");
     REQUIRE(materials.size() == 3);
@@ -245,6 +245,17 @@ TEST_CASE_METHOD(MtlFixture, "a mesh for each material, by names with blanks in 
         CHECK(part.bsdf.is<bsdf_diffuse_record>());
         CHECK_FALSE(part.radiance);
     }
+}
+
+TEST_CASE_METHOD(MtlFixture, "each mesh keeps the texture coordinates of its triangles", "[mtl]") {
+    const auto path = scratch.write("a.obj", triangles + "vt 0 0\nvt 0.5 0\nvt 0 0.25\nusemtl a\nf 1/1 2/2 3/1\n"
+                                                         "usemtl b\nf 1/3 2/2 4\n");
+    const auto meshes = meshes_by_material(read_obj(path, {}), path, {}, {.own_bsdf = true, .own_emitter = true});
+    REQUIRE(meshes.size() == 2);
+    const auto &second = std::get<TriangleMesh>(meshes[1].shape);
+    REQUIRE(second.uvs.size() == 2);
+    CHECK(second.uvs[0] == std::array<float, 2>{0, 0.25});
+    CHECK(second.uv_corners == std::vector<std::array<unsigned, 3>>{{0, 1, OPAL_NONE}});
 }
 
 TEST_CASE_METHOD(MtlFixture, "a library that is missing is told, with its place", "[mtl]") {

@@ -1,5 +1,6 @@
 #include "read/nori/properties.h"
 #include "base/log.h"
+#include "base/values.h"
 #include "support/error_of.h"
 
 #include <catch2/catch.hpp>
@@ -101,6 +102,9 @@ TEST_CASE("NaN, infinity and what single precision cannot hold are errors", "[pr
           "a.xml:2:1: property 'p': 'nan' is not a finite number in single precision");
     CHECK(value_error("float", "3.4e38").empty());
     CHECK(value_error("float", "1e-40").empty());
+    CHECK(value_error("float", "1e-400").empty()); // 0, as in C
+    for (const char *text : {"1e-400", " -1e-400\n", "+1e-99999999999", "0.0e400"})
+        CHECK(parse_number(text) == 0);
 }
 
 TEST_CASE("attributes and contents of properties are checked", "[properties]") {
@@ -120,8 +124,8 @@ TEST_CASE("objects carry a type and nothing else", "[properties]") {
         return error_of([&] { Properties(document.root(), {}); });
     };
     CHECK(error_of_object("<mesh/>") == "a.xml:1:1: <mesh> lacks the attribute 'type'");
-    CHECK(error_of_object("<mesh type='obj' id='1'/>") ==
-          "a.xml:1:1: unknown attribute 'id' of <mesh>; available: type");
+    CHECK(error_of_object("<mesh type='obj' class='1'/>") ==
+          "a.xml:1:1: unknown attribute 'class' of <mesh>; available: type");
 }
 
 TEST_CASE("children are only those that were asked for", "[properties]") {

@@ -117,9 +117,10 @@ TEST_CASE("Names of any bytes keep the image and the JSON", "[render_command]") 
     REQUIRE(outcome.exit_code == 0);
     const auto stats = nlohmann::json::parse(read_text(folder.scratch / "stats.json"));
     CHECK_THAT(stats["scene"].get<std::string>(), Catch::EndsWith("sz\uFFFDne.xml"));
-    CHECK_THAT(stats["warnings"][0].get<std::string>(), Catch::Contains("k\uFFFDse.obj: dropped 1 triangles"));
+    CHECK_THAT(stats["warnings"][0].get<std::string>(), Catch::Contains("k\uFFFDse.obj:5:1: dropped 1 triangles"));
     const Image image = read_exr(folder.scratch / "b\344r.exr");
     CHECK(image.metadata.at("opal.scene") == folder.scene); // the bytes themselves
+    CHECK(image.metadata.at("opal.dialect") == "upstream");
     CHECK_THAT(image.metadata.at("opal.warnings"), Catch::Contains("k\uFFFDse.obj"));
 }
 

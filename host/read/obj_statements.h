@@ -1,0 +1,65 @@
+// The strict pass over the text of an OBJ file, in front of tinyobjloader: checks every statement, and hands over those
+// that the library reads right.
+#pragma once
+
+#include "scene/place.h"
+
+#include <array>
+#include <streambuf>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace opal {
+
+// How often something was met, and what and where first.
+struct ObjTally {
+    size_t count = 0;
+    std::string word; // at most 40 characters of it
+    SourcePlace place;
+};
+
+// A stream of clean statements, a line each: `v`, `vn`, `vt` with three numbers at most, `f` with its corners.
+// Comments, repeated blanks, continued lines, further numbers, and indices of `vt` and `vn` that are 0 or left out stay
+// behind; other statements go to take_other. A line is made once the line before is read, so that a callback of the
+// library can ask for the statement that it is called for. Throws Error "file:line:col: ..." for a malformed number or
+// index.
+class ObjStatements : public std::streambuf {
+public:
+    ObjStatements(std::string file, std::string_view text) : file_(std::move(file)), text_(text) {}
+
+protected:
+    virtual void take_other() = 0; // a statement that is none of these four
+
+    void rewind(); // to the first statement
+
+    // Of the present statement:
+    using Words = std::vector<std::string_view>;
+    const Words &words() const { return words_; }
+    const std::array<double, 3> &numbers() const { return numbers_; } // of `vn` and `vt` also infinite or NaN
+    std::string rest() const; // of the line behind the first word, with comments, without blanks at the ends
+    SourcePlace place(std::string_view word) const;
+    [[noreturn]] void fail(std::string_view word, const std::string &message) const;
+    void count(ObjTally &tally, std::string_view word) const;
+
+    ObjTally absent;          // indices of `vt` and `vn` that mean none: 0, and what the reader adds
+    ObjTally further_numbers; // statements `v` with weights or colours
+
+private:
+    int_type underflow() override;
+    bool next();
+    bool add_line();
+    void take_statement();
+    void take_numbers(size_t least, double (*parse)(std::string_view));
+    void take_corner(std::string_view word);
+
+    std::string file_;
+    std::string_view text_;
+    size_t position_ = 0, statement_ = 0; // offsets of the next line and of the present statement
+    int lines_ = 0, lines_before_ = 0;    // lines before these offsets
+    Words words_;
+    std::array<double, 3> numbers_{};
+    std::string line_; // what the library reads next
+};
+
+} // namespace opal
