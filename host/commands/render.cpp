@@ -8,6 +8,7 @@
 #include "commands/commands.h"
 #include "commands/options.h"
 #include "flatten/flat_scene.h"
+#include "flatten/scene_warnings.h"
 #include "render/render_film.h"
 #include "render/report.h"
 #include "scene/options.h"
@@ -103,6 +104,11 @@ Request prepare(const Options &o) {
         if (!file.empty())
             check_writable(file);
     request.load_seconds = load.seconds();
+    constexpr size_t most_faces = 300'000; // 0.03 s; `opal inspect` looks at all
+    for (const std::string &line : scene_warnings(scene, most_faces))
+        warn(line);
+    for (const std::string &line : scene_notes(scene, o.spp || request.rule.given()))
+        note(line);
     return request;
 }
 

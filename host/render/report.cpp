@@ -143,6 +143,11 @@ std::vector<std::string> film_warnings(const RenderReport &render) {
                                     film.invalid, places));
     }
     const FilmStatistics &s = render.statistics;
+    const bool asks_lights = integrator_of(render.scene.strategy).has(OPAL_ASKS_LIGHTS);
+    if (s.samples > 0 && s.mean_rgb == std::array<double, 3>{} && asks_lights && has_light(render.scene))
+        lines.push_back(
+            fmt::format("{}: the image is black, although the scene has lights: none of {} samples found light",
+                        render.scene.file.string(), s.samples));
     if (s.empty_pixels == 0)
         return lines;
     const size_t pixels = film.count.size();

@@ -7,8 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace opal {
 
 namespace {
@@ -55,15 +53,10 @@ void turn_camera(SceneDescription &scene) {
         scene.camera.to_world = scene.camera.to_world * Transform::scale({-1, 1, 1});
 }
 
-bool has_light(const SceneDescription &scene) {
-    return !integrator_of(scene.strategy).has(OPAL_ASKS_LIGHTS) || !scene.lights.empty() ||
-           std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh &mesh) { return mesh.radiance; });
-}
-
 void warn_if_black(const SceneDescription &scene, const XmlNode &node) {
     if (scene.meshes.empty())
         warn(node.place().text() + ": the scene has no <mesh>; it renders black");
-    else if (!has_light(scene))
+    else if (integrator_of(scene.strategy).has(OPAL_ASKS_LIGHTS) && !has_light(scene))
         warn(node.place().text() + ": the scene has no <emitter>; it renders black");
 }
 
@@ -82,6 +75,7 @@ SceneDescription parse_scene(const XmlNode &node, const ParseContext &context) {
     scene.file = node.place().file;
     const DialectChoice dialect = choose_dialect(node, context);
     scene.dialect = dialect.dialect;
+    scene.sampler_place = node.place();
     apply_integrator(scene.strategy, find_integrator(scene.integrator_type));
     const auto camera = properties.child("camera");
     if (!camera)
