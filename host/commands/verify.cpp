@@ -153,7 +153,7 @@ int run(const Options &o) {
     const std::vector<StrategyRender> renders = render_all(o, strategies, scenes, device, clock);
     if (renders.size() < strategies.size()) {
         warn(fmt::format("interrupted after {} of {} strategies: no verdict", renders.size(), strategies.size()));
-        return exit_interrupted;
+        return interrupt_exit_code();
     }
     if (clock.left() < -0.25 * o.budget)
         warn(fmt::format(
