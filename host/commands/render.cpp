@@ -12,6 +12,7 @@
 #include "render/report.h"
 #include "scene/options.h"
 #include "selftest/selftest.h"
+#include "strategies/combinations.h"
 #include "sweep/auto.h"
 
 #include <fmt/format.h>
@@ -39,12 +40,14 @@ private:
 void tell_what_runs(const SceneDescription &scene, const FlatScene &flat, const DevicePick &pick, int lanes,
                     unsigned seed) {
     std::string strategy;
-    for (int axis = 0; axis < AXIS_COUNT; axis++)
+    for (int axis : acting_axes(scene))
         strategy += fmt::format("{}{} {}", axis ? ", " : "", axes()[axis].name,
                                 axis == AXIS_integrator ? integrator_name(scene)
                                                         : axes()[axis].choices[scene.strategy[axis]].name);
-    info(fmt::format("scene   {}: {} meshes, {} triangles, {} emitters, {} x {} pixels, {} spp, seed {}",
-                     scene.file.string(), scene.meshes.size(), flat.triangles.size(), flat.emitters.size(),
+    const auto count = [](size_t n, const char *what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); };
+    info(fmt::format("scene   {}: {}, {}, {}, {} x {} pixels, {} spp, seed {}", scene.file.string(),
+                     scene.meshes.size() == 1 ? "1 mesh" : fmt::format("{} meshes", scene.meshes.size()),
+                     count(flat.triangles.size(), "triangle"), count(flat.emitters.size(), "emitter"),
                      scene.camera.width, scene.camera.height, scene.spp, seed));
     info("how     " + strategy);
     info(fmt::format("device  {}, {} lane{}, math {}", text_of(pick), lanes, lanes == 1 ? "" : "s",
