@@ -64,6 +64,9 @@ int main(int argc, char **argv) {
         code = opal::run(argc, argv);
     } catch (const std::bad_alloc &) {
         opal::tell_error("out of memory on the host");
+    } catch (const opal::ErrorList &errors) {
+        for (const std::string &line : errors.lines())
+            opal::tell_error(line.c_str());
     } catch (const std::exception &error) {
         opal::tell_error(error.what());
     }

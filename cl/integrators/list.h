@@ -29,6 +29,7 @@ enum {
     INTEGRATOR(with, direct_lighting, render, OPAL_ASKS_BSDFS | OPAL_ASKS_LIGHTS | OPAL_ONE_SAMPLE_MIS, \
                OPAL_READS_LIGHTING, "one bounce of direct light") \
     INTEGRATOR(with, path, render, OPAL_ASKS_BSDFS | OPAL_ASKS_LIGHTS | OPAL_FOLLOWS_PATHS, \
-               OPAL_READS_LIGHTING | OPAL_READS(rr), "full path tracing")
+               OPAL_READS_LIGHTING | OPAL_READS(rr), "full path tracing") \
+    INTEGRATOR(with, av, render, 0, 0, "average visibility: the hemisphere's share in which nothing is near")
 
 #endif

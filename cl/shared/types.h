@@ -71,6 +71,7 @@ typedef struct {
     uint rr_depth;                  // roulette starts when a path has this many segments
     float rr_prob;                  // --rr fixed: probability to survive, a multiple of 2^-24 as random numbers are
     uint normals_signed;            // integrator normals: n/2 + 1/2 (1) or |n| (0)
+    float visibility_length;        // integrator av: how far it looks
     float light_position[3];        // integrator simple
     float light_energy[3];          // integrator simple, W, times FlatScene::scale^2
     int filter;                     // FILTER_*
@@ -79,7 +80,7 @@ typedef struct {
     float filter_b, filter_c;       // mitchell
     int choices[AXIS_COUNT];        // CHOICE_* of each axis; read by the general kernel only
 } Settings;
-OPAL_SIZE_CHECK(Settings, 104 + 4 * AXIS_COUNT);
+OPAL_SIZE_CHECK(Settings, 108 + 4 * AXIS_COUNT);
 
 #ifdef __cplusplus
 }

@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace opal {
 
@@ -11,6 +12,22 @@ namespace opal {
 class Error : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
+};
+
+// Several failures at once, a line each. main prints each after "error: ".
+class ErrorList : public Error {
+public:
+    explicit ErrorList(std::vector<std::string> lines) : Error(text_of(lines)), lines_(std::move(lines)) {}
+    const std::vector<std::string> &lines() const { return lines_; }
+
+private:
+    static std::string text_of(const std::vector<std::string> &lines) {
+        std::string text;
+        for (const std::string &line : lines)
+            text += (text.empty() ? "" : "\n") + line;
+        return text;
+    }
+    std::vector<std::string> lines_;
 };
 
 } // namespace opal

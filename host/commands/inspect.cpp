@@ -95,6 +95,7 @@ void print_mesh(const Mesh &mesh) {
 void print_scene(const SceneDescription &scene, const FlatScene &flat) {
     const Camera &camera = scene.camera;
     row("scene", "{}", scene.file.string());
+    row("dialect", "{}", name_of(scene.dialect));
     row("camera", "{} x {} pixels, {}, near {:g}, far {:g}", camera.width, camera.height, camera_text(camera),
         camera.near_clip, camera.far_clip);
     row("filter", "{}{}", filter_text(camera.filter), camera.filter.given ? "" : " (the dialect's default)");

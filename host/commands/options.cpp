@@ -15,6 +15,13 @@ std::string integrator_help() {
                        fmt::join(names_of(integrator_types()), ", "));
 }
 
+// The dialects, and auto.
+std::vector<std::string> dialect_choices() {
+    std::vector<std::string> names = names_of(dialects());
+    names.emplace_back("auto");
+    return names;
+}
+
 OptionRow override_row(SceneOptions &options, const std::string &name, const std::string &type,
                        const std::string &help) {
     return {.flags = "--" + name,
@@ -41,7 +48,15 @@ std::vector<OptionRow> strategy_rows(SceneOptions &options) {
         rows.push_back(override_row(options, option.name, option.values, option.help));
     rows.push_back({.flags = "--lenient",
                     .target = &options.load.lenient,
-                    .help = "An unknown property of the scene warns instead of failing"});
+                    .help =
+                        "What Opal does not know in the scene warns instead of failing: an attribute, a property, a "
+                        "tag, or a type, for which the warning says what stands in"});
+    rows.push_back({.flags = "--dialect",
+                    .target = &options.load.dialect,
+                    .help = "Whose scene it is: upstream (Nori), course (2022: box filter), eth (ETH's course, Nori of "
+                            "2012: the camera's +x points to the right of the image), or auto: by its names",
+                    .check = OneOf<std::string>{dialect_choices()},
+                    .type = "NAME"});
     rows.push_back({.flags = "--cl-dir",
                     .target = &options.cl_dir,
                     .help = "Read the kernels from this copy of cl/ [those in the binary]",

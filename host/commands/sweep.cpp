@@ -79,6 +79,7 @@ SweepRecord fresh_record(const Options &o, const SceneDescription &scene, const 
     r.version = OPAL_VERSION;
     r.scene = scene.file.string();
     r.scene_hash = hash_of(scene);
+    r.dialect = name_of(scene.dialect);
     for (const DevicePick &d : devices)
         r.devices.push_back({d.info.index, d.info.name, d.info.driver});
     r.reference_file = o.reference;

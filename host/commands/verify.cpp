@@ -150,7 +150,9 @@ int run(const Options &o) {
     const std::vector<FlatScene> scenes = flatten_all(scene, strategies, pick.info, own_kernels);
     const Device device = open_device(pick.info);
     watch_interrupts();
-    const std::vector<StrategyRender> renders = render_all(o, strategies, scenes, device, clock);
+    std::vector<StrategyRender> renders = render_all(o, strategies, scenes, device, clock);
+    for (StrategyRender &render : renders)
+        render.image.metadata["opal.dialect"] = name_of(scene.dialect);
     if (renders.size() < strategies.size()) {
         warn(fmt::format("interrupted after {} of {} strategies: no verdict", renders.size(), strategies.size()));
         return interrupt_exit_code();
@@ -163,6 +165,7 @@ int run(const Options &o) {
     const Agreement agreement = test_agreement(renders, o.significance);
     nlohmann::json report = json_of(agreement, renders);
     report.update(object({{"scene", scene.file.string()},
+                          {"dialect", name_of(scene.dialect)},
                           {"device", pick.info.name},
                           {"driver", pick.info.driver},
                           {"seed", o.seed},

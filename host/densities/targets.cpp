@@ -1,6 +1,7 @@
 #include "densities/targets.h"
 
 #include "base/table.h"
+#include "base/values.h"
 #include "read/nori/load.h"
 #include "read/nori/parsers.h"
 #include "scene/examples.h"

@@ -30,6 +30,7 @@ void fill_strategy(const SceneDescription &description, const Flattening &flatte
     settings.rr_depth = description.strategy.rr_depth;
     settings.rr_prob = float(drawn_probability(description.strategy.rr_prob));
     settings.normals_signed = description.normals_signed;
+    settings.visibility_length = float(description.visibility_length * flattening.scale);
     store((description.simple_light.position - flattening.center) * flattening.scale, settings.light_position);
     for (int i = 0; i < 3; i++)
         settings.light_energy[i] = float(description.simple_light.energy[i] * flattening.scale * flattening.scale);

@@ -17,15 +17,15 @@ namespace {
 
 using namespace std::literals;
 
-const std::string by_assimp = "assimp export FILE NEW.obj (Debian: assimp-utils), or import it into Blender and export "
-                              "Wavefront (.obj)";
+const std::string by_assimp = "convert it: assimp export FILE NEW.obj (Debian: assimp-utils), or import it into "
+                              "Blender and export Wavefront (.obj)";
 const std::string by_blender = "open it in Blender and export Wavefront (.obj)";
 const std::string no_text_format = "Opal reads Nori's scenes (.xml) and Wavefront meshes (.obj)";
 
 // Kinds that begin with bytes of their own.
 struct Magic {
     std::string_view bytes;
-    std::string name, conversion;
+    std::string name, advice;
     FileKind kind = FileKind::other;
 };
 const std::vector<Magic> magics = {
@@ -41,21 +41,21 @@ const std::vector<Magic> magics = {
     {"#usda", "a USD scene", by_blender},
     {"PXR-USDC", "a USD scene", by_blender},
     {"Ogawa", "an Alembic scene", by_blender},
-    {"\x1c\x04"sv, "a Mitsuba .serialized mesh", "load it in Mitsuba 3 and write it with Mesh.write_ply, then as PLY"},
-    {"\x1f\x8b"sv, "compressed by gzip", "gzip -dc FILE > NEW"},
-    {"PK\x03\x04"sv, "a zip archive", "unzip FILE"},
-    {"BZh", "compressed by bzip2", "bzip2 -dc FILE > NEW"},
+    {"\x1c\x04"sv, "a Mitsuba .serialized mesh", "convert it: write_ply of Mitsuba 3, then assimp export FILE NEW.obj"},
+    {"\x1f\x8b"sv, "compressed by gzip", "unpack it: gzip -dc FILE > NEW"},
+    {"PK\x03\x04"sv, "a zip archive", "unpack it: unzip FILE"},
+    {"BZh", "compressed by bzip2", "unpack it: bzip2 -dc FILE > NEW"},
     {"\xfd"
      "7zXZ",
-     "compressed by xz", "xz -dc FILE > NEW"},
-    {"\x28\xb5\x2f\xfd", "compressed by zstd", "zstd -dc FILE > NEW; Blender's own files are: " + by_blender},
-    {"7z\xbc\xaf", "a 7z archive", "7z x FILE"},
+     "compressed by xz", "unpack it: xz -dc FILE > NEW"},
+    {"\x28\xb5\x2f\xfd", "compressed by zstd", "unpack it: zstd -dc FILE > NEW; if it is Blender's: " + by_blender},
+    {"7z\xbc\xaf", "a 7z archive", "unpack it: 7z x FILE"},
     {"\x89PNG", "a PNG image", ""},
     {"\xff\xd8\xff", "a JPEG image", ""},
     {"\x76\x2f\x31\x01", "an OpenEXR image", ""},
     {"#?RADIANCE", "a Radiance HDR image", ""},
     {"%PDF", "a PDF document", ""},
-    {"version https://git-lfs", "a pointer that stands for the real file, by Git LFS", "git lfs pull"},
+    {"version https://git-lfs", "a pointer that stands for the real file, by Git LFS", "get it: git lfs pull"},
 };
 
 // A binary STL has no magic: its size follows from its count of triangles.
@@ -213,12 +213,12 @@ size_t lone_carriage_return(std::string_view text) {
 
 FileKindRow kind_of(std::string_view bytes) {
     if (const std::string unicode = unicode_name(bytes); !unicode.empty())
-        return {FileKind::text, unicode + " text", fmt::format("iconv -f {} -t UTF-8 FILE > NEW", unicode)};
+        return {FileKind::text, unicode + " text", fmt::format("convert it: iconv -f {} -t UTF-8 FILE > NEW", unicode)};
     if (bytes.starts_with("\xef\xbb\xbf"))
         bytes.remove_prefix(3);
     for (const Magic &magic : magics)
         if (bytes.starts_with(magic.bytes))
-            return {magic.kind, magic.name, magic.conversion};
+            return {magic.kind, magic.name, magic.advice};
     if (is_binary_stl(bytes))
         return {FileKind::other, "a binary STL mesh", by_assimp};
     if (contains(bytes.substr(0, 4096), "\0"sv))
@@ -228,7 +228,7 @@ FileKindRow kind_of(std::string_view bytes) {
 
 std::string wrong_kind_text(const std::filesystem::path &file, const FileKindRow &found, FileKind wanted) {
     return fmt::format("{}: is {}, not {}{}{}", file.string(), found.name, name_of(wanted),
-                       found.conversion.empty() ? "" : "; ", found.conversion);
+                       found.advice.empty() ? "" : "; ", found.advice);
 }
 
 std::string read_text_file(const std::filesystem::path &file, FileKind wanted) {
@@ -240,7 +240,7 @@ std::string read_text_file(const std::filesystem::path &file, FileKind wanted) {
         text.erase(0, 3);
     if (lone_carriage_return(text) != text.npos)
         throw Error(fmt::format("{}: lines end with a carriage return alone, as on old Macintoshes; "
-                                "tr '\\r' '\\n' < FILE > NEW",
+                                "convert them: tr '\\r' '\\n' < FILE > NEW",
                                 file.string()));
     return text;
 }

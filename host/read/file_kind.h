@@ -20,14 +20,15 @@ enum class FileKind {
 
 struct FileKindRow {
     FileKind kind = FileKind::unknown;
-    std::string name;       // with its article: "a binary PLY mesh"; empty if unknown
-    std::string conversion; // a command or a sentence, FILE and NEW stand for names; empty if there is none
+    std::string name; // with its article: "a binary PLY mesh"; empty if unknown
+    std::string
+        advice; // how to get what Opal reads, FILE and NEW stand for names: "unpack it: unzip FILE"; may be empty
 };
 
 // The kind of a file by its first bytes, and for text by its root element or first statement.
 FileKindRow kind_of(std::string_view bytes);
 
-// The error about a file that is no `wanted`: "FILE: is a PLY mesh, not an OBJ file; to convert it: ...".
+// The error about a file that is no `wanted`: "FILE: is a PLY mesh, not an OBJ file; convert it: ...".
 std::string wrong_kind_text(const std::filesystem::path &file, const FileKindRow &found, FileKind wanted);
 
 // All text of a file without its UTF-8 byte order mark. Throws Error: the file cannot be read; it is of another kind

@@ -89,6 +89,7 @@ private:
     void add_face(const tinyobj::index_t *corners, size_t corner_count);
     FaceCorner read_corner(const tinyobj::index_t &written, std::string_view word);
     unsigned index_of(int written, size_t so_far, size_t all, const char *what, std::string_view word);
+    std::vector<std::array<unsigned, 3>> cut(const std::vector<Vec3> &outline) const;
     void add_triangle(size_t a, size_t b, size_t c);
     void drop(double rounding);
     void tell(const TriangleMesh &mesh) const;
@@ -252,8 +253,17 @@ void ObjReader::add_face(const tinyobj::index_t *corners, size_t corner_count) {
         outline_.clear();
         for (const FaceCorner &corner : corners_)
             outline_.push_back(positions_[corner.position]);
-        for (auto [a, b, c] : triangulate(outline_))
+        for (auto [a, b, c] : cut(outline_))
             add_triangle(a, b, c);
+    }
+}
+
+// Triangles of the present face, whose corners these are.
+std::vector<std::array<unsigned, 3>> ObjReader::cut(const std::vector<Vec3> &outline) const {
+    try {
+        return triangulate(outline);
+    } catch (const Error &error) {
+        fail(words()[0], error.what());
     }
 }
 

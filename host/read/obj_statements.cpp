@@ -28,28 +28,31 @@ size_t comment_in(std::string_view row) {
     return std::min(at, row.size());
 }
 
-// As parse_number and parse_integer, which are slower and know what is wrong.
-double parse_coordinate(std::string_view word) {
-    double value;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    const bool right = error == std::errc() && end == word.data() + word.size() &&
-                       std::abs(value) <= std::numeric_limits<float>::max();
-    return right ? value : parse_number(word);
+// Whether all of the word is a number; also infinity and NaN.
+template <class Number> bool parse(std::string_view word, Number &number) {
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    return error == std::errc() && end == word.data() + word.size();
 }
 
-int parse_index(std::string_view word) {
-    int value;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return error == std::errc() && end == word.data() + word.size() ? value : parse_integer(word);
+// The slower parse_number and parse_integer know what is wrong, and forms that are rare.
+
+double parse_coordinate(std::string_view word) {
+    double value;
+    return parse(word, value) && std::abs(value) <= std::numeric_limits<float>::max() ? value : parse_number(word);
 }
 
 // A coordinate, or NaN where infinity or NaN is written.
 double parse_coordinate_or_nan(std::string_view word) {
+    double value;
+    if (parse(word, value) && std::abs(value) <= std::numeric_limits<float>::max())
+        return value;
     const std::string_view size = word.substr(word.starts_with('+') || word.starts_with('-'));
-    double value = 0;
-    const auto [end, error] = std::from_chars(size.data(), size.data() + size.size(), value);
-    const bool is_word = end == size.data() + size.size() && error == std::errc() && !std::isfinite(value);
-    return is_word || size.starts_with("1.#") ? NAN : parse_coordinate(word);
+    return (parse(size, value) && !std::isfinite(value)) || size.starts_with("1.#") ? NAN : parse_number(word);
+}
+
+int parse_index(std::string_view word) {
+    int value;
+    return parse(word, value) ? value : parse_integer(word);
 }
 
 } // namespace

@@ -1,8 +1,8 @@
 #include "read/xml.h"
 
-#include "base/error.h"
 #include "base/read_file.h"
 #include "base/table.h"
+#include "read/file_kind.h"
 
 #include <fmt/format.h>
 
@@ -13,26 +13,41 @@ namespace opal {
 
 namespace {
 
-[[noreturn]] void fail_at(const SourcePlace &place, const std::string &message) {
-    throw Error(place.text() + ": " + message);
+void tell(const MistakeHandler &mistake, const SourcePlace &place, const std::string &message) {
+    if (!mistake)
+        throw XmlError(place, message);
+    mistake(place, message);
 }
 
 bool is_text(pugi::xml_node node) { return node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata; }
 
-// The child elements of a node. Text that is not blank is an Error.
-std::vector<XmlNode> elements_of(const XmlDocument &document, pugi::xml_node parent) {
+// The child elements of a node. Text that is not blank is a mistake.
+std::vector<XmlNode> elements_of(const XmlDocument &document, pugi::xml_node parent, const MistakeHandler &mistake) {
     std::vector<XmlNode> elements;
     for (pugi::xml_node child : parent.children()) {
         if (is_text(child)) {
             size_t start = document.text().find_first_not_of(" \t\r\n", size_t(child.offset_debug()));
-            fail_at(document.place(ptrdiff_t(start)),
-                    "text between the tags: nothing but tags and comments may stand here");
+            tell(mistake, document.place(ptrdiff_t(start)),
+                 "text between the tags: nothing but tags and comments may stand here");
         }
         if (child.type() == pugi::node_element)
             elements.emplace_back(document, child);
     }
     return elements;
 }
+
+// The first element that is nested too deep for parsers, which call themselves for each level.
+class TooDeep : public pugi::xml_tree_walker {
+public:
+    static constexpr int most_levels = 64; // scenes of Nori have about 6
+    bool for_each(pugi::xml_node &node) override {
+        if (depth() < most_levels || node.type() != pugi::node_element)
+            return true;
+        found = node;
+        return false;
+    }
+    pugi::xml_node found;
+};
 
 } // namespace
 
@@ -46,26 +61,34 @@ SourcePlace place_in(const std::string &file, std::string_view text, ptrdiff_t o
 
 SourcePlace XmlNode::place() const { return document_->place(node_.offset_debug() - 1); }
 
-std::vector<XmlNode> XmlNode::children() const { return elements_of(*document_, node_); }
+std::vector<XmlNode> XmlNode::children(const MistakeHandler &mistake) const {
+    return elements_of(*document_, node_, mistake);
+}
 
-void XmlNode::require_attributes(std::initializer_list<const char *> names) const {
+void XmlNode::require_attributes(std::initializer_list<const char *> names, const MistakeHandler &mistake,
+                                 const AttributeHandler &unknown) const {
     std::vector<std::string> known(names.begin(), names.end()), seen;
     for (pugi::xml_attribute attribute : node_.attributes()) {
         std::string name = attribute.name();
-        if (std::find(known.begin(), known.end(), name) == known.end())
-            fail(unknown_name("attribute", name, known, fmt::format(" of <{}>", tag())));
         if (std::find(seen.begin(), seen.end(), name) != seen.end())
-            fail(fmt::format("<{}> has the attribute '{}' twice", tag(), name));
+            tell(mistake, place(), fmt::format("<{}> has the attribute '{}' twice", tag(), name));
         seen.push_back(name);
+        if (std::find(known.begin(), known.end(), name) != known.end())
+            continue;
+        const std::string message = unknown_name("attribute", name, known, fmt::format(" of <{}>", tag()));
+        if (!unknown)
+            fail(message);
+        unknown(name, message);
     }
     for (const std::string &name : known)
         if (std::find(seen.begin(), seen.end(), name) == seen.end())
-            fail(fmt::format("<{}> lacks the attribute '{}'", tag(), name));
+            tell(mistake, place(), fmt::format("<{}> lacks the attribute '{}'", tag(), name));
 }
 
-void XmlNode::fail(const std::string &message) const { fail_at(place(), message); }
+void XmlNode::fail(const std::string &message) const { throw XmlError(place(), message); }
 
-XmlDocument::XmlDocument(const std::filesystem::path &file) : XmlDocument(file, read_file(file)) {}
+XmlDocument::XmlDocument(const std::filesystem::path &file)
+    : XmlDocument(file, read_text_file(file, FileKind::scene)) {}
 
 XmlDocument::XmlDocument(const std::filesystem::path &file, std::string text)
     : file_(file.string()), text_(std::move(text)) {
@@ -77,13 +100,17 @@ XmlDocument::XmlDocument(const std::filesystem::path &file, std::string text)
     if (result.status == pugi::status_out_of_memory)
         cannot_read(file, ENOMEM);
     if (!result)
-        fail_at(place(result.offset), std::string("not well-formed XML: ") + result.description());
+        throw XmlError(place(result.offset), std::string("not well-formed XML: ") + result.description());
+    TooDeep walker;
+    document_.traverse(walker);
+    if (walker.found)
+        XmlNode(*this, walker.found).fail(fmt::format("more than {} tags within each other", TooDeep::most_levels));
 }
 
 XmlNode XmlDocument::root() const {
-    std::vector<XmlNode> roots = elements_of(*this, document_);
+    std::vector<XmlNode> roots = elements_of(*this, document_, {});
     if (roots.empty())
-        fail_at(place(0), "holds no <scene>");
+        throw XmlError(place(0), "holds no <scene>");
     if (roots.size() > 1)
         roots[1].fail("a second root <" + roots[1].tag() + ">; a file holds one");
     return roots[0];

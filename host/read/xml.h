@@ -1,11 +1,13 @@
 // XML elements that know their place in the file, so that every error can say file:line:col.
 #pragma once
 
-#include "scene/scene.h"
+#include "base/error.h"
+#include "scene/place.h"
 
 #include <pugixml.hpp>
 
 #include <filesystem>
+#include <functional>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -15,6 +17,22 @@ namespace opal {
 
 // Line and column of a byte offset in a file's text, from 1; columns count characters of UTF-8.
 SourcePlace place_in(const std::string &file, std::string_view text, ptrdiff_t offset);
+
+// An Error "file:line:col: message".
+class XmlError : public Error {
+public:
+    XmlError(const SourcePlace &place, const std::string &message)
+        : Error(place.text() + ": " + message), place_(place) {}
+    const SourcePlace &place() const { return place_; }
+
+private:
+    SourcePlace place_;
+};
+
+// Takes a mistake and lets the caller go on. An empty one throws XmlError.
+using MistakeHandler = std::function<void(const SourcePlace &, const std::string &message)>;
+// Takes an attribute that is not among those wanted, and the sentence that says so. An empty one throws XmlError.
+using AttributeHandler = std::function<void(const std::string &name, const std::string &message)>;
 
 class XmlDocument;
 
@@ -26,11 +44,13 @@ public:
     std::string tag() const { return node_.name(); }
     SourcePlace place() const; // of the '<'
     std::string attribute(const char *name) const { return node_.attribute(name).value(); }
-    // The child elements, in document order. Text between them is an Error.
-    std::vector<XmlNode> children() const;
-    // Throws Error unless the element has exactly these attributes, each once.
-    void require_attributes(std::initializer_list<const char *> names) const;
-    [[noreturn]] void fail(const std::string &message) const; // Error "file:line:col: message"
+    bool has_attribute(const char *name) const { return !node_.attribute(name).empty(); }
+    // The child elements, in document order. Text between them is a mistake.
+    std::vector<XmlNode> children(const MistakeHandler &mistake = {}) const;
+    // It is a mistake unless the element has exactly these attributes, each once.
+    void require_attributes(std::initializer_list<const char *> names, const MistakeHandler &mistake = {},
+                            const AttributeHandler &unknown = {}) const;
+    [[noreturn]] void fail(const std::string &message) const; // throws XmlError
 
 private:
     const XmlDocument *document_;

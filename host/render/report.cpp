@@ -55,6 +55,7 @@ nlohmann::json RenderReport::json() const {
     const FilmStatistics &s = statistics;
     nlohmann::json j;
     j["scene"] = scene.file.string();
+    j["dialect"] = name_of(scene.dialect);
     j["device"] = device.name;
     j["driver"] = device.driver;
     j["lanes"] = lanes;

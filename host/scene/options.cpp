@@ -97,17 +97,27 @@ StrategyOption option_of_axis(int axis) {
             [axis](const Strategy &s) { return axes()[axis].choices[s[axis]].name; }};
 }
 
-constexpr bool university = true;
-
-// Names of the two dialects that imply choices, or differ from the integrator's own. An integrator that is not here has
-// its own name.
+// Names of the dialects that imply choices, or differ from the integrator's own. An integrator that is not here has its
+// own name.
 const std::vector<IntegratorType> dialect_types = {
-    {"whitted", CHOICE_integrator_whitted, !university, CHOICE_lighting_emitter, CHOICE_rr_fixed},
-    {"direct_lighting", CHOICE_integrator_direct_lighting, university},
-    {"path_tracer_recursive", CHOICE_integrator_path, university},
-    {"path_mats", CHOICE_integrator_path, !university, CHOICE_lighting_bsdf, CHOICE_rr_throughput_eta},
-    {"path_ems", CHOICE_integrator_path, !university, CHOICE_lighting_emitter, CHOICE_rr_throughput_eta},
-    {"path_mis", CHOICE_integrator_path, !university, CHOICE_lighting_mis, CHOICE_rr_throughput_eta},
+    {"whitted", CHOICE_integrator_whitted, CHOICE_lighting_emitter, CHOICE_rr_fixed},
+    {"direct_lighting", CHOICE_integrator_direct_lighting},
+    {"path_tracer_recursive", CHOICE_integrator_path},
+    {"path_mats", CHOICE_integrator_path, CHOICE_lighting_bsdf, CHOICE_rr_throughput_eta},
+    {"path_ems", CHOICE_integrator_path, CHOICE_lighting_emitter, CHOICE_rr_throughput_eta},
+    {"path_mis", CHOICE_integrator_path, CHOICE_lighting_mis, CHOICE_rr_throughput_eta},
+};
+
+// Further names, which are listed last. direct_mats and so on are those of ETH's and Zaragoza's courses, by what public
+// forks compute: direct and direct_whitted sample every light once, direct_ems one of them, which is one expectation.
+// mipath is the path_mis of 2012.
+const std::vector<IntegratorType> other_types = {
+    {"direct", CHOICE_integrator_direct_lighting, CHOICE_lighting_emitter},
+    {"direct_ems", CHOICE_integrator_direct_lighting, CHOICE_lighting_emitter},
+    {"direct_mats", CHOICE_integrator_direct_lighting, CHOICE_lighting_bsdf},
+    {"direct_mis", CHOICE_integrator_direct_lighting, CHOICE_lighting_mis},
+    {"direct_whitted", CHOICE_integrator_direct_lighting, CHOICE_lighting_emitter},
+    {"mipath", CHOICE_integrator_path, CHOICE_lighting_mis, CHOICE_rr_throughput_eta},
 };
 
 std::vector<IntegratorType> all_types() {
@@ -123,6 +133,7 @@ std::vector<IntegratorType> all_types() {
         if (!named)
             types.push_back(own);
     }
+    types.insert(types.end(), other_types.begin(), other_types.end());
     return types;
 }
 

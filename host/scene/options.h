@@ -29,10 +29,9 @@ void set_option(Strategy &strategy, const std::string &name, const std::string &
 // A name of an integrator, as the XML and --integrator give it, with the choices that the name implies.
 struct IntegratorType {
     std::string name;
-    int integrator;          // CHOICE_integrator_*
-    bool university = false; // a name of the 2022 course, whose default filter is the box
-    int lighting = -1;       // CHOICE_lighting_*, or -1: left to the properties
-    int rr = -1;             // CHOICE_rr_*, or -1
+    int integrator;    // CHOICE_integrator_*
+    int lighting = -1; // CHOICE_lighting_*, or -1: left to the properties
+    int rr = -1;       // CHOICE_rr_*, or -1
 };
 
 std::span<const IntegratorType> integrator_types();

@@ -12,6 +12,11 @@ std::string SourcePlace::text() const {
     return column == 0 ? fmt::format("{}:{}", file, line) : fmt::format("{}:{}:{}", file, line, column);
 }
 
+std::span<const DialectRow> dialects() {
+    static const DialectRow table[] = {{"upstream"}, {"course"}, {"eth"}};
+    return table;
+}
+
 const char *bsdf_name(unsigned kind) {
 #define OPAL_BSDF_NAME(name, traits) #name,
     static const char *const names[] = {OPAL_ALL_BSDFS(OPAL_BSDF_NAME)};

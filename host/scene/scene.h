@@ -13,10 +13,20 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace opal {
+
+// The forks of Nori whose scenes Opal reads. They differ in the default filter (the 2022 course has a box, the others a
+// Gaussian) and in the camera: its +x points to the image's left, with ETH's course and the Nori of 2012 to the right.
+enum class Dialect { upstream, course, eth };
+struct DialectRow {
+    std::string name;
+};
+std::span<const DialectRow> dialects(); // index = Dialect
+inline const std::string &name_of(Dialect dialect) { return dialects()[static_cast<std::size_t>(dialect)].name; }
 
 // Names of kinds, as the XML gives them: "diffuse".
 const char *bsdf_name(unsigned kind);   // kind: BSDF_*
@@ -85,10 +95,11 @@ struct SceneDescription {
     std::vector<Mesh> meshes;
     std::vector<Light> lights;                // beside the meshes that emit
     std::string integrator_type = "path_mis"; // as written, e.g. path_tracer_recursive; path_mis where there is none
-    bool university_dialect = false;          // the integrator's name is one of the 2022 course
+    Dialect dialect = Dialect::upstream;
     Strategy strategy;
     bool normals_signed = false;
     SimpleLight simple_light;
+    double visibility_length = 1; // integrator av: how far it looks
     unsigned spp = 1;
 };
 

@@ -63,6 +63,8 @@ TriangleMesh TriangleMesh::part(const std::vector<size_t> &indices) const {
             for (unsigned &corner : part.uv_corners.emplace_back(uv_corners[index]))
                 renumber(corner, uvs, part.uvs, new_uvs);
     }
+    if (part.uvs.empty())
+        part.uv_corners.clear();
     return part;
 }
 

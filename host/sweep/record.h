@@ -58,7 +58,7 @@ struct ReferenceRecord {
 
 struct SweepRecord {
     // A run that continues a sweep must agree in these.
-    std::string version, scene, scene_hash, reference_file, clock; // clock: kernel or cpu
+    std::string version, scene, scene_hash, dialect, reference_file, clock; // clock: kernel or cpu
     std::vector<DeviceRecord> devices;
     int width = 0, height = 0;
     // In these it may differ.

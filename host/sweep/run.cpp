@@ -145,6 +145,7 @@ private:
                        b = strategy.render(half, plan_.seed, first_reference_sample_b);
             const FilmStatistics sa = statistics_of(a.film), sb = statistics_of(b.film);
             reference_ = reference_from_halves(a.image, b.image);
+            reference_.metadata["opal.dialect"] = record_.dialect;
             write_exr(reference_, reference_file());
             r = {best_->name,
                  2 * half,
@@ -232,6 +233,7 @@ private:
             r = strategy.render(spp, plan_.seed + 1);
             seconds = r.seconds;
         }
+        r.image.metadata["opal.dialect"] = record_.dialect;
         write_exr(r.image, files[0]);
         write_png(r.image, files[1]);
         write_png(error_map(reference_, r.image), files[2]);

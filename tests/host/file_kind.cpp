@@ -48,8 +48,8 @@ TEST_CASE_METHOD(KindFixture, "a byte order mark of UTF-8 is no part of the text
 }
 
 TEST_CASE_METHOD(KindFixture, "text in UTF-16 and UTF-32 is named, with and without a mark", "[file_kind]") {
-    CHECK_THAT(error_in("\xff\xfe" + in_utf16(obj_text, false)), Catch::StartsWith("is UTF-16 text, not an OBJ file; "
-                                                                                   "iconv -f UTF-16 -t UTF-8"));
+    CHECK_THAT(error_in("\xff\xfe" + in_utf16(obj_text, false)),
+               Catch::StartsWith("is UTF-16 text, not an OBJ file; convert it: iconv -f UTF-16 -t UTF-8"));
     CHECK_THAT(error_in("\xfe\xff" + in_utf16(obj_text, true)), Catch::StartsWith("is UTF-16 text"));
     CHECK_THAT(error_in(in_utf16(obj_text, false)), Catch::StartsWith("is UTF-16LE text"));
     CHECK_THAT(error_in(in_utf16(obj_text, true)), Catch::StartsWith("is UTF-16BE text"));
@@ -114,8 +114,9 @@ TEST_CASE("files are told by their bytes, whatever their names", "[file_kind]") 
 
 TEST_CASE_METHOD(KindFixture, "the error says what the file is and how to convert it", "[file_kind]") {
     CHECK_THAT(error_in("ply\nformat ascii 1.0\n"),
-               Catch::StartsWith("is a PLY mesh, not an OBJ file; assimp export FILE NEW.obj"));
-    CHECK(error_in("\x1f\x8b\x08"s, FileKind::scene) == "is compressed by gzip, not a scene; gzip -dc FILE > NEW");
+               Catch::StartsWith("is a PLY mesh, not an OBJ file; convert it: assimp export FILE NEW.obj"));
+    CHECK(error_in("\x1f\x8b\x08"s, FileKind::scene) ==
+          "is compressed by gzip, not a scene; unpack it: gzip -dc FILE > NEW");
     CHECK_THAT(error_in(obj_text, FileKind::scene), Catch::StartsWith("is a Wavefront OBJ mesh, not a scene; "));
     CHECK_THAT(error_in("<scene/>", FileKind::obj), Catch::StartsWith("is a scene, not an OBJ file; "));
     CHECK(error_in(obj_text, FileKind::obj).empty());

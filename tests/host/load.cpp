@@ -272,8 +272,8 @@ TEST_CASE_METHOD(LoadFixture, "BSDF values that make no sense fail at their plac
         bsdf_error("difuse", ""),
         Catch::StartsWith(":3:28: unknown bsdf type 'difuse'; did you mean 'diffuse'? available: diffuse, mirror"));
     CHECK(bsdf_error("area", "").starts_with(":3:28: unknown bsdf type 'area'; "));
-    CHECK(bsdf_error("mirror", "<float name='alpha' value='1'/>") ==
-          ":4:1: unknown property 'alpha' of bsdf 'mirror'; available: use_cosine");
+    CHECK(bsdf_error("mirror", "<float name='pd' value='1'/>") ==
+          ":4:1: unknown property 'pd' of bsdf 'mirror'; available: use_cosine");
 }
 
 TEST_CASE_METHOD(LoadFixture, "emitters stand where they belong", "[load]") {

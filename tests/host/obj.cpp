@@ -443,6 +443,17 @@ TEST_CASE("outlines that no triangulation is right for still give corners - 2 tr
     CHECK(triangulate({{0, 0, 0}, {1, 0, 0}}).empty());
 }
 
+TEST_CASE_METHOD(ObjFixture, "a face that is too large to be cut is refused at its place", "[obj]") {
+    std::string vertices, face = "f";
+    for (int i = 0; i < 10002; ++i) { // a star
+        const double radius = i % 2 ? 1 : 0.5, angle = 2 * M_PI * i / 10002;
+        vertices += fmt::format("v {} {} 0\n", radius * std::cos(angle), radius * std::sin(angle));
+        face += fmt::format(" {}", i + 1);
+    }
+    CHECK_THAT(error_in(vertices + "\n  " + face + "\n"),
+               Catch::StartsWith(":10004:3: a face of 10002 corners that is not convex: at most 10000"));
+}
+
 TEST_CASE_METHOD(ObjFixture, "triangles without area are dropped and counted", "[obj]") {
     size_t before = warnings().size();
     TriangleMesh mesh = read(square + "v 2 0 0\nv 0.1 0.3 0.7\nv 0.2 0.6 1.4\nv 0.3 0.9 2.1\n"
@@ -591,6 +602,9 @@ TEST_CASE_METHOD(ObjFixture, "texture coordinates are kept where triangles have 
     const TriangleMesh moved = mesh.moved(Transform::scale({2, 2, 2}));
     CHECK(moved.uvs == mesh.uvs);
     CHECK(moved.uv_corners == mesh.uv_corners);
+    CHECK(mesh.part({1}).uvs == mesh.uvs);
+    CHECK(mesh.part({1}).uv_corners == decltype(mesh.uv_corners){{0, 1, OPAL_NONE}});
+    CHECK(mesh.part({0}).uv_corners.empty());
     const TriangleMesh unused = read(square + "vt 0 0\nf 1 2 3\n");
     CHECK(unused.uvs.empty());
     CHECK(unused.uv_corners.empty());
@@ -634,7 +648,7 @@ TEST_CASE_METHOD(ObjFixture, "what is left out of a file is noted once, unless -
     CHECK_THAT(test::run_shell(command + " --quiet").err, !Catch::Contains("note"));
 }
 
-TEST_CASE_METHOD(ObjFixture, "names are the rest of the line", "[obj]") {
+TEST_CASE_METHOD(ObjFixture, "names in OBJ files are the rest of the line", "[obj]") {
     const ObjFile obj =
         read_obj(scratch.write("a.obj", square + "mtllib  ./a b.mtl\\\r\n c.mtl\r\nusemtl\tMaterial #25 \r\n"
                                                  "f 1 2 3\nusemtl stra\303\237e.001"),

@@ -124,8 +124,8 @@ TEST_CASE("objects carry a type and nothing else", "[properties]") {
         return error_of([&] { Properties(document.root(), {}); });
     };
     CHECK(error_of_object("<mesh/>") == "a.xml:1:1: <mesh> lacks the attribute 'type'");
-    CHECK(error_of_object("<mesh type='obj' id='1'/>") ==
-          "a.xml:1:1: unknown attribute 'id' of <mesh>; available: type");
+    CHECK(error_of_object("<mesh type='obj' class='1'/>") ==
+          "a.xml:1:1: unknown attribute 'class' of <mesh>; available: type");
 }
 
 TEST_CASE("children are only those that were asked for", "[properties]") {

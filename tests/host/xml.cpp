@@ -50,6 +50,20 @@ TEST_CASE("malformed XML fails at its place", "[xml]") {
     CHECK_THAT(error_in("<scene>\n<!-- "), Catch::StartsWith("a.xml:2:"));
 }
 
+TEST_CASE("tags within each other are counted", "[xml]") {
+    const auto nested = [](int levels) {
+        std::string text;
+        for (int i = 0; i < levels; i++)
+            text += "<a>";
+        for (int i = 0; i < levels; i++)
+            text += "</a>";
+        return text;
+    };
+    CHECK(error_in(nested(64)).empty());
+    CHECK(error_in(nested(65)) == "a.xml:1:193: more than 64 tags within each other");
+    CHECK(error_in(nested(1000000)) == "a.xml:1:193: more than 64 tags within each other");
+}
+
 TEST_CASE("one root and nothing beside it", "[xml]") {
     CHECK(error_in("") == "a.xml:1:1: holds no <scene>");
     CHECK(error_in("<!-- nothing -->") == "a.xml:1:1: holds no <scene>");

@@ -66,6 +66,7 @@ TEST_CASE("The same picture at every width, in every integrator", "[lanes]") {
     const std::vector<Overrides> strategies = {
         {{"integrator", "normals"}},
         {{"integrator", "ao"}, {"hemisphere", "cosine"}},
+        {{"integrator", "av"}},
         {{"integrator", "simple"}},
         {{"integrator", "whitted"}},
         {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "one-sample"}},

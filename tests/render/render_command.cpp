@@ -120,6 +120,7 @@ TEST_CASE("Names of any bytes keep the image and the JSON", "[render_command]") 
     CHECK_THAT(stats["warnings"][0].get<std::string>(), Catch::Contains("k\uFFFDse.obj:5:1: dropped 1 triangles"));
     const Image image = read_exr(folder.scratch / "b\344r.exr");
     CHECK(image.metadata.at("opal.scene") == folder.scene); // the bytes themselves
+    CHECK(image.metadata.at("opal.dialect") == "upstream");
     CHECK_THAT(image.metadata.at("opal.warnings"), Catch::Contains("k\uFFFDse.obj"));
 }
 

@@ -55,13 +55,15 @@ void add_children(Properties &properties, const BsdfType &type, Bsdf &bsdf) {
                                       [](const Parameter &p) { return p.type == ParameterType::BSDF; });
     if (wanted == 0)
         return;
-    for (const XmlNode &node : properties.children("bsdf")) {
-        const Bsdf &child = bsdf.children.emplace_back(parse_bsdf(node, properties.context()));
-        if (child.traits() & type.refused & OPAL_TRANSMITS)
-            node.fail(fmt::format("a {} cannot hold a BSDF that light passes through", type.name));
-    }
-    if (std::ssize(bsdf.children) != wanted)
-        properties.fail(fmt::format("a {} has {} <bsdf> within it, not {}", type.name, wanted, bsdf.children.size()));
+    const std::vector<XmlNode> nodes = properties.children("bsdf");
+    for (const XmlNode &node : nodes)
+        properties.context().attempt(node, [&] {
+            const Bsdf &child = bsdf.children.emplace_back(parse_bsdf(node, properties.context()));
+            if (child.traits() & type.refused & OPAL_TRANSMITS)
+                node.fail(fmt::format("a {} cannot hold a BSDF that light passes through", type.name));
+        });
+    if (std::ssize(nodes) != wanted)
+        properties.mistake(fmt::format("a {} has {} <bsdf> within it, not {}", type.name, wanted, nodes.size()));
 }
 
 } // namespace
@@ -70,11 +72,13 @@ Bsdf parse_bsdf(const XmlNode &node, const ParseContext &context) {
     Properties properties(node, context);
     Bsdf bsdf;
     bsdf.place = node.place();
-    const BsdfType &type = row_of_type(node, bsdf_types);
-    bsdf.words = type.words;
+    const BsdfType *type = properties.row_of_type(bsdf_types, "a diffuse one of albedo 0.5 stands in for it");
+    if (!type)
+        return bsdf;
+    bsdf.words = type->words;
     for (const Parameter &parameter : bsdf_parameters(bsdf.kind()))
         read_parameter(properties, parameter, bsdf.words);
-    add_children(properties, type, bsdf);
+    add_children(properties, *type, bsdf);
     properties.ignore("use_cosine"); // exporters write it for every material
     properties.finish();
     return bsdf;

@@ -58,26 +58,30 @@ const std::vector<CameraType> camera_types = {OPAL_CAMERAS(OPAL_CAMERA_TYPE)};
 } // namespace
 
 Filter parse_filter(const XmlNode &node, const ParseContext &context) {
-    const FilterType &type = row_of_type(node, filter_types);
     Properties properties(node, context);
+    const FilterType *type = properties.row_of_type(filter_types, "the default filter stands in for it");
     Filter filter;
-    filter.kind = type.kind;
+    if (!type)
+        return filter;
+    filter.kind = type->kind;
     filter.given = true;
-    type.parse(properties, filter);
+    type->parse(properties, filter);
     properties.finish();
     return filter;
 }
 
 Camera parse_camera(const XmlNode &node, const ParseContext &context) {
-    const CameraType &type = row_of_type(node, camera_types);
     Properties properties(node, context);
+    const CameraType *type = properties.row_of_type(camera_types, "a perspective one stands in for it");
+    if (!type)
+        type = &camera_types[CAMERA_perspective];
     Camera camera;
-    camera.kind = type.kind;
+    camera.kind = type->kind;
     camera.place = node.place();
     camera.to_world = properties.transform("toWorld").value_or(Transform());
     camera.width = properties.integer("width").value_or(camera.width);
     camera.height = properties.integer("height").value_or(camera.height);
-    type.parse(properties, camera);
+    type->parse(properties, camera);
     camera.near_clip = properties.number("nearClip").value_or(camera.near_clip);
     camera.far_clip = properties.number("farClip").value_or(camera.far_clip);
     properties.check(camera.width >= 1, "width", "must be at least 1 pixel");
@@ -85,7 +89,7 @@ Camera parse_camera(const XmlNode &node, const ParseContext &context) {
     properties.check(camera.near_clip >= 0, "nearClip", "must not be negative");
     properties.check(camera.far_clip > camera.near_clip, "farClip", "must be larger than nearClip");
     if (auto filter = properties.child("rfilter"))
-        camera.filter = parse_filter(*filter, context);
+        context.attempt(*filter, [&] { camera.filter = parse_filter(*filter, context); });
     properties.finish();
     return camera;
 }

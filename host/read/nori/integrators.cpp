@@ -2,6 +2,8 @@
 #include "read/nori/parsers.h"
 #include "scene/options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace opal {
@@ -17,9 +19,15 @@ void parse_ao(Properties &properties, SceneDescription &scene) {
     scene.strategy[AXIS_hemisphere] = cosine ? CHOICE_hemisphere_cosine : CHOICE_hemisphere_uniform;
 }
 
+void parse_av(Properties &properties, SceneDescription &scene) {
+    scene.visibility_length = properties.required(properties.number("length"), "length");
+    properties.check(scene.visibility_length > 0, "length", "must be above 0: how far it looks");
+}
+
 void parse_simple(Properties &properties, SceneDescription &scene) {
-    scene.simple_light.position = properties.required(properties.point("position"), "position");
-    scene.simple_light.energy = properties.required(properties.color("energy"), "energy");
+    const auto position = properties.point("position");
+    const auto energy_given = properties.color("energy");
+    scene.simple_light = {properties.required(position, "position"), properties.required(energy_given, "energy")};
     const Color &energy = scene.simple_light.energy;
     properties.check(*std::min_element(energy.begin(), energy.end()) >= 0, "energy", "must not be negative");
 }
@@ -53,6 +61,7 @@ struct Parser {
 // Integrators with properties of their own.
 const std::vector<Parser> parsers = {{"normals", parse_normals},
                                      {"ao", parse_ao},
+                                     {"av", parse_av},
                                      {"simple", parse_simple},
                                      {"direct_lighting", parse_direct_lighting},
                                      {"path_tracer_recursive", parse_path_tracer_recursive}};
@@ -64,21 +73,23 @@ void parse_options(Properties &properties, Strategy &strategy) {
             try {
                 set_option(strategy, option.name, *value);
             } catch (const Error &error) {
-                properties.fail_at(option.xml_name, error.what());
+                properties.mistake_at(option.xml_name, error.what());
             }
 }
 
 } // namespace
 
 void parse_integrator(const XmlNode &node, const ParseContext &context, SceneDescription &scene) {
-    const IntegratorType &type = row_of_type(node, integrator_types());
     Properties properties(node, context);
-    scene.integrator_type = type.name;
-    scene.university_dialect = type.university;
-    apply_integrator(scene.strategy, type);
+    const IntegratorType *type =
+        properties.row_of_type(integrator_types(), fmt::format("{} stands in for it", scene.integrator_type));
+    if (!type)
+        type = &find_integrator(scene.integrator_type);
+    scene.integrator_type = type->name;
+    apply_integrator(scene.strategy, *type);
     for (const Parser &parser : parsers)
-        if (parser.name == type.name)
-            parser.parse(properties, scene);
+        if (parser.name == type->name)
+            context.attempt(node, [&] { parser.parse(properties, scene); });
     parse_options(properties, scene.strategy);
     properties.finish();
 }

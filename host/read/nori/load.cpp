@@ -1,6 +1,7 @@
 #include "read/nori/load.h"
 
 #include "base/log.h"
+#include "read/nori/names.h"
 #include "read/nori/parsers.h"
 #include "scene/options.h"
 
@@ -12,13 +13,46 @@ namespace opal {
 
 namespace {
 
-// The default filter, for a scene without <rfilter>: the 2022 course has a box, Nori a Gaussian of radius 2.
+// The default filter, for a scene without <rfilter>.
 void choose_filter(SceneDescription &scene) {
     Filter &filter = scene.camera.filter;
     if (filter.given)
         return;
-    filter.kind = scene.university_dialect ? FILTER_box : FILTER_gaussian;
-    filter.radius = scene.university_dialect ? 0.5 : 2;
+    const bool is_box = scene.dialect == Dialect::course;
+    filter.kind = is_box ? FILTER_box : FILTER_gaussian;
+    filter.radius = is_box ? 0.5 : 2;
+}
+
+// What follows from a dialect for this scene; empty if nothing does.
+std::string consequence_of(const SceneDescription &scene) {
+    if (scene.dialect == Dialect::course)
+        return scene.camera.filter.given ? "" : "without <rfilter> the filter is a box";
+    return fmt::format("the camera's +x points to the {} of the image",
+                       scene.dialect == Dialect::eth ? "right" : "left");
+}
+
+DialectChoice choose_dialect(const XmlNode &scene, const ParseContext &context) {
+    return context.dialect ? DialectChoice{*context.dialect, "", ""} : dialect_of(scene);
+}
+
+// Says by which name the dialect was told, where something follows from it.
+void tell_dialect(const SceneDescription &scene, const DialectChoice &choice, const SourcePlace &place) {
+    const std::string dialect = name_of(choice.dialect), consequence = consequence_of(scene);
+    if (!choice.against.empty())
+        warn(fmt::format("{}: names of several dialects: {}, and {}; it is read as {}{}{}; --dialect decides otherwise",
+                         place.text(), choice.reason, choice.against, dialect, consequence.empty() ? "" : ": ",
+                         consequence));
+    else if (!choice.reason.empty() && !consequence.empty())
+        info(fmt::format("dialect {}, by {}: {}; --dialect decides otherwise", dialect, choice.reason, consequence));
+    else if (!scene.camera.filter.given)
+        info(fmt::format("no <rfilter>: {}, as dialect {} means it",
+                         scene.camera.filter.kind == FILTER_box ? "box" : "gaussian", dialect));
+}
+
+// Opal's camera has +x to the left of the image.
+void turn_camera(SceneDescription &scene) {
+    if (scene.dialect == Dialect::eth)
+        scene.camera.to_world = scene.camera.to_world * Transform::scale({-1, 1, 1});
 }
 
 bool has_light(const SceneDescription &scene) {
@@ -35,26 +69,42 @@ void warn_if_black(const SceneDescription &scene, const XmlNode &node) {
 
 } // namespace
 
+ParseContext context_for(const std::filesystem::path &file, const LoadOptions &options, Mistakes &mistakes) {
+    ParseContext context{file.parent_path(), options.lenient, &mistakes};
+    if (options.dialect != "auto")
+        context.dialect = Dialect(&find_row(dialects(), "dialect", options.dialect) - dialects().data());
+    return context;
+}
+
 SceneDescription parse_scene(const XmlNode &node, const ParseContext &context) {
     Properties properties(node, context, false);
     SceneDescription scene;
     scene.file = node.place().file;
+    const DialectChoice dialect = choose_dialect(node, context);
+    scene.dialect = dialect.dialect;
     apply_integrator(scene.strategy, find_integrator(scene.integrator_type));
-    auto camera = properties.child("camera");
+    const auto camera = properties.child("camera");
     if (!camera)
-        properties.fail("<scene> lacks its <camera>");
+        properties.lacks("<scene> lacks its <camera>");
     if (auto integrator = properties.child("integrator"))
-        parse_integrator(*integrator, context, scene);
+        context.attempt(*integrator, [&] { parse_integrator(*integrator, context, scene); });
     if (auto sampler = properties.child("sampler"))
-        parse_sampler(*sampler, context, scene);
-    scene.camera = parse_camera(*camera, context);
+        context.attempt(*sampler, [&] { parse_sampler(*sampler, context, scene); });
+    if (camera)
+        context.attempt(*camera, [&] { scene.camera = parse_camera(*camera, context); });
     for (const XmlNode &child : properties.children("mesh"))
-        for (Mesh &mesh : parse_meshes(child, context))
-            scene.meshes.push_back(std::move(mesh));
+        context.attempt(child, [&] {
+            for (Mesh &mesh : parse_meshes(child, context))
+                scene.meshes.push_back(std::move(mesh));
+        });
     for (const XmlNode &emitter : properties.children("emitter"))
-        scene.lights.push_back(parse_scene_emitter(emitter, context));
+        context.attempt(emitter, [&] { scene.lights.push_back(parse_scene_emitter(emitter, context)); });
     properties.finish();
     choose_filter(scene);
+    turn_camera(scene);
+    if (context.mistakes && context.mistakes->count() > 0)
+        return scene;
+    tell_dialect(scene, dialect, node.place());
     warn_if_black(scene, node);
     return scene;
 }
@@ -66,10 +116,9 @@ SceneDescription load_scene(const std::filesystem::path &file, const LoadOptions
         root.fail("this is a <test>, not a <scene>: run it with `opal test`");
     if (root.tag() != "scene")
         root.fail(unknown_name("root", root.tag(), {"scene", "test"}));
-    SceneDescription scene = parse_scene(root, {file.parent_path(), options.lenient});
-    if (!scene.camera.filter.given)
-        info(fmt::format("no <rfilter>: {}, as scenes with integrator {} mean it",
-                         scene.university_dialect ? "box" : "gaussian", scene.integrator_type));
+    Mistakes mistakes;
+    SceneDescription scene = parse_scene(root, context_for(file, options, mistakes));
+    mistakes.throw_all();
     return scene;
 }
 

@@ -1,4 +1,4 @@
-// The reader of Nori's scenes, in the dialects of Nori itself and of the 2022 course.
+// The reader of Nori's scenes, in the dialects of Nori itself, of the 2022 course and of ETH's course.
 #pragma once
 
 #include "scene/scene.h"
@@ -6,11 +6,12 @@
 namespace opal {
 
 struct LoadOptions {
-    bool lenient = false; // an unknown property warns instead of failing
+    bool lenient = false;         // what is unknown warns instead of failing
+    std::string dialect = "auto"; // the name of a Dialect; auto: by the names in the scene
 };
 
 // Reads a scene. Relative file names are looked for beside the XML file, then in the current folder. Throws Error
-// "file:line:col: what is wrong; available: ...".
+// "file:line:col: what is wrong; available: ...", or an ErrorList of all mistakes.
 SceneDescription load_scene(const std::filesystem::path &file, const LoadOptions &options = {});
 
 } // namespace opal

@@ -1,10 +1,13 @@
-// Parsers of Nori's objects, one a kind; the XML's `type` picks a row of the kind's table. All fill in the defaults,
-// and throw Error at file:line:col.
+// Parsers of Nori's objects, one a kind; the XML's `type` picks a row of the kind's table. All fill in the defaults.
+// Mistakes go to the context; an object that cannot be made throws NoObject.
 #pragma once
 
 #include "read/nori/properties.h"
 
 namespace opal {
+
+struct LoadOptions;
+ParseContext context_for(const std::filesystem::path &file, const LoadOptions &options, Mistakes &mistakes);
 
 Bsdf parse_bsdf(const XmlNode &node, const ParseContext &context);
 

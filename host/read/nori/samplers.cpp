@@ -5,8 +5,9 @@ namespace opal {
 
 void parse_sampler(const XmlNode &node, const ParseContext &context, SceneDescription &scene) {
     std::span<const Choice> types = axes()[AXIS_sampler].choices;
-    scene.strategy[AXIS_sampler] = static_cast<int>(&row_of_type(node, types) - types.data());
     Properties properties(node, context);
+    if (const Choice *type = properties.row_of_type(types, types.front().name + " stands in for it"))
+        scene.strategy[AXIS_sampler] = static_cast<int>(type - types.data());
     int count = properties.integer("sampleCount").value_or(1);
     properties.check(count >= 1, "sampleCount", "must be at least 1 sample per pixel");
     scene.spp = static_cast<unsigned>(count);

@@ -28,8 +28,10 @@ struct MeshStart {
 };
 
 std::vector<Mesh> parse_obj(Properties &properties, MeshStart start) {
-    std::string name = properties.required(properties.string("filename"), "filename");
+    // Properties are fetched before one is required: none of them is unknown where another is missing.
+    const auto filename = properties.string("filename");
     const bool with_materials = properties.boolean("materials").value_or(false);
+    std::string name = properties.required(filename, "filename");
     if (start.mesh.name.empty())
         start.mesh.name = name;
     const std::filesystem::path file = find_file(properties, name);
@@ -47,13 +49,13 @@ std::vector<Mesh> parse_obj(Properties &properties, MeshStart start) {
 }
 
 std::vector<Mesh> parse_parallelogram(Properties &properties, MeshStart start) {
-    Parallelogram shape;
-    shape.origin = properties.required(properties.point("origin"), "origin");
-    shape.u = properties.required(properties.vector("u"), "u");
-    shape.v = properties.required(properties.vector("v"), "v");
-    shape = shape.moved(start.to_world);
+    const auto origin = properties.point("origin");
+    const auto u = properties.vector("u"), v = properties.vector("v");
+    const Parallelogram shape =
+        Parallelogram{properties.required(origin, "origin"), properties.required(u, "u"), properties.required(v, "v")}
+            .moved(start.to_world);
     if (!(length(cross(shape.u, shape.v)) > 1e-12 * length(shape.u) * length(shape.v)))
-        properties.fail("the parallelogram has no area: u and v are zero or parallel");
+        properties.mistake("the parallelogram has no area: u and v are zero or parallel");
     start.mesh.shape = shape;
     return {std::move(start.mesh)};
 }
@@ -68,22 +70,27 @@ const std::vector<ShapeType> shape_types = {{"obj", parse_obj}, {"parallelogram"
 } // namespace
 
 std::vector<Mesh> parse_meshes(const XmlNode &node, const ParseContext &context) {
-    const ShapeType &type = row_of_type(node, shape_types);
     Properties properties(node, context);
+    const ShapeType *type = properties.row_of_type(shape_types, "the shape is left out");
+    if (!type && context.lenient)
+        throw NoObject{};
     MeshStart start;
     Mesh &mesh = start.mesh;
     mesh.place = node.place();
     mesh.name = properties.string("name").value_or("");
     start.to_world = properties.transform("toWorld").value_or(Transform());
     if (auto bsdf = properties.child("bsdf")) {
-        mesh.bsdf = parse_bsdf(*bsdf, context);
+        context.attempt(*bsdf, [&] { mesh.bsdf = parse_bsdf(*bsdf, context); });
         start.own.own_bsdf = true;
     }
     if (auto emitter = properties.child("emitter")) {
-        parse_area_emitter(*emitter, context, mesh);
+        context.attempt(*emitter, [&] { parse_area_emitter(*emitter, context, mesh); });
         start.own.own_emitter = true;
     }
-    std::vector<Mesh> meshes = type.parse(properties, std::move(start));
+    if (!type)
+        throw NoObject{};
+    std::vector<Mesh> meshes;
+    context.attempt(node, [&] { meshes = type->parse(properties, std::move(start)); });
     properties.finish();
     return meshes;
 }

@@ -1,5 +1,6 @@
 #include "read/nori/tests.h"
 
+#include "base/values.h"
 #include "read/nori/parsers.h"
 
 #include <fmt/format.h>
@@ -30,7 +31,7 @@ void parse_ttest(Properties &properties, TestDescription &test) {
     test.sample_count = positive(properties, "sampleCount", 100000);
     properties.check(test.sample_count >= 2, "sampleCount", "must be at least 2: one sample has no variance");
     if (!test.scenes.empty() && !test.bsdfs.empty())
-        properties.fail("a ttest holds scenes or BSDFs, not both");
+        properties.mistake("a ttest holds scenes or BSDFs, not both");
     properties.check(test.scenes.empty() || test.angles.empty(), "angles", "mean nothing for scenes");
     size_t means = test.scenes.empty() ? test.bsdfs.size() * test.angles.size() : test.scenes.size();
     properties.check(means == test.references.size(), "references",
@@ -45,7 +46,7 @@ void parse_chi2test(Properties &properties, TestDescription &test) {
     test.min_expected_frequency = positive(properties, "minExpFrequency", test.min_expected_frequency);
     test.test_count = positive(properties, "testCount", test.test_count);
     if (!test.scenes.empty())
-        properties.fail("a chi2test holds BSDFs, not scenes");
+        properties.mistake("a chi2test holds BSDFs, not scenes");
 }
 
 struct TestType {
@@ -56,22 +57,24 @@ struct TestType {
 const std::vector<TestType> test_types = {{"ttest", parse_ttest}, {"chi2test", parse_chi2test}};
 
 TestDescription parse_test(const XmlNode &node, const ParseContext &context) {
-    const TestType &type = row_of_type(node, test_types);
     Properties properties(node, context);
+    const TestType *type = properties.row_of_type(test_types, "nothing is tested");
     TestDescription test;
-    test.type = type.name;
+    if (!type)
+        return test;
+    test.type = type->name;
     test.place = node.place();
     test.significance_level = properties.number("significanceLevel").value_or(test.significance_level);
     properties.check(test.significance_level > 0 && test.significance_level < 1, "significanceLevel",
                      "must lie between 0 and 1");
     for (const XmlNode &scene : properties.children("scene"))
-        test.scenes.push_back(parse_scene(scene, context));
+        context.attempt(scene, [&] { test.scenes.push_back(parse_scene(scene, context)); });
     for (const XmlNode &bsdf : properties.children("bsdf"))
-        test.bsdfs.push_back(parse_bsdf(bsdf, context));
-    type.parse(properties, test);
-    properties.finish();
+        context.attempt(bsdf, [&] { test.bsdfs.push_back(parse_bsdf(bsdf, context)); });
+    context.attempt(node, [&] { type->parse(properties, test); });
     if (test.scenes.empty() && test.bsdfs.empty())
-        node.fail("the test holds nothing to test");
+        properties.lacks("the test holds nothing to test");
+    properties.finish();
     return test;
 }
 
@@ -84,7 +87,10 @@ TestDescription load_test(const std::filesystem::path &file, const LoadOptions &
         root.fail("this is a <scene>, not a <test>: run it with `opal render`");
     if (root.tag() != "test")
         root.fail(unknown_name("root", root.tag(), {"scene", "test"}));
-    return parse_test(root, {file.parent_path(), options.lenient});
+    Mistakes mistakes;
+    const TestDescription test = parse_test(root, context_for(file, options, mistakes));
+    mistakes.throw_all();
+    return test;
 }
 
 } // namespace opal

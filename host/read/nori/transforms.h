@@ -2,11 +2,12 @@
 #pragma once
 
 #include "base/math.h"
-#include "read/xml.h"
+#include "read/nori/context.h"
 
 namespace opal {
 
-// Error at an operation that is malformed, or at the transform if it is not invertible.
-Transform parse_transform(const XmlNode &node);
+// It is a mistake if an operation is malformed, or if the transform is not invertible. Throws NoObject after a mistake
+// that the context gathers.
+Transform parse_transform(const XmlNode &node, const ParseContext &context = {});
 
 } // namespace opal

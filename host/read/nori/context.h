@@ -1,0 +1,75 @@
+// The context of parsing: the user's options, and what becomes of mistakes.
+#pragma once
+
+#include "read/xml.h"
+#include "scene/scene.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace opal {
+
+// The mistakes of one file, told together.
+class Mistakes {
+public:
+    // text: the whole message; at: its place in the scene's file, by which mistakes are ordered.
+    // The same text twice in a row, of two channels of a colour, counts once.
+    void add(const SourcePlace &at, const std::string &text) {
+        if (list_.empty() || list_.back().text != text)
+            list_.push_back({at, text});
+    }
+    size_t count() const { return list_.size(); }
+    // Throws Error or ErrorList, in the order of the file, if there are any: the first 20, and how many more there are.
+    void throw_all() const;
+
+private:
+    struct Mistake {
+        SourcePlace at;
+        std::string text;
+    };
+    std::vector<Mistake> list_;
+};
+
+// Thrown by the parser of an object that cannot be made. The reason was told before.
+struct NoObject {};
+
+struct ParseContext {
+    std::filesystem::path folder;     // of the XML file: relative file names are looked for there first
+    bool lenient = false;             // what is unknown warns instead of failing
+    Mistakes *mistakes = nullptr;     // gathers mistakes; null: the first one is thrown
+    std::optional<Dialect> dialect{}; // nothing: a scene's names tell it
+
+    void mistake(const SourcePlace &place, const std::string &message) const;
+    void mistake(const XmlNode &node, const std::string &message) const { mistake(node.place(), message); }
+    MistakeHandler handler() const;
+    // A name that Opal does not know: a mistake, or a warning if lenient.
+    void unknown(const XmlNode &node, const std::string &message) const;
+    // As XmlNode::require_attributes. Leftovers (names.h) get a note.
+    void require_attributes(const XmlNode &node, std::initializer_list<const char *> names) const;
+
+    // Runs `make`, which may read the object at `node`. An Error is gathered with the others, so that parsing goes on.
+    template <class Make> void attempt(const XmlNode &node, Make make) const {
+        try {
+            make();
+        } catch (const NoObject &) {
+        } catch (const Error &error) {
+            gather(node, error);
+        }
+    }
+
+private:
+    void gather(const XmlNode &node, const Error &error) const; // throws it if mistakes are not gathered
+};
+
+// Runs `parse` and adds the place of this node to its Error.
+template <class Parse> decltype(auto) at_place(const XmlNode &node, Parse parse) {
+    try {
+        return parse();
+    } catch (const Error &error) {
+        node.fail(error.what());
+    }
+}
+
+} // namespace opal
