@@ -46,7 +46,7 @@ std::string element_with(const DialectName &name) {
     if (name.tag == "integrator")
         return integrator(name.name, name.name == "av" ? "<float name='length' value='1'/>" : "");
     if (name.tag == "emitter")
-        return "<emitter type='" + name.name + "'/>";
+        return "<emitter type='" + name.name + "'><color name='" + name.with + "' value='1 2 3'/></emitter>";
     if (name.tag == "luminaire")
         return "<mesh type='parallelogram'>" + square +
                "<luminaire type='area'><color name='radiance' value='1 1 1'/></luminaire></mesh>";
@@ -93,11 +93,13 @@ TEST_CASE_METHOD(DialectFixture, "the default filter is the dialect's", "[dialec
 }
 
 TEST_CASE_METHOD(DialectFixture, "names of two dialects are warned of", "[dialects]") {
-    const std::string both = camera + integrator("direct_ems") + "\n" + light + "<emitter type='pointlight'/>";
+    const std::string both = camera + integrator("direct_ems") + "\n" + light +
+                             "<emitter type='pointlight'><color name='radiance' value='1 1 1'/></emitter>";
     CHECK(load(both).dialect == Dialect::upstream);
     const std::string file = (scratch / "a.xml").string();
-    CHECK_THAT(warnings().back(), Catch::StartsWith(file + ":1:1: names of several dialects: emitter 'pointlight' at " +
-                                                    file + ":5:1, and integrator 'direct_ems' at " + file + ":3:1; "));
+    CHECK_THAT(warnings().back(),
+               Catch::StartsWith(file + ":1:1: names of several dialects: emitter 'pointlight' with a 'radiance' at " +
+                                 file + ":5:1, and integrator 'direct_ems' at " + file + ":3:1; "));
     const size_t before = warnings().size();
     CHECK(load(both, {.dialect = "eth"}).dialect == Dialect::eth);
     CHECK(warnings().size() == before);

@@ -16,18 +16,19 @@ struct OtherName {
 // luminaire: Nori of 2012. shape: some forks.
 const std::vector<OtherName> other_tags = {{"luminaire", "emitter"}, {"shape", "mesh"}};
 
-// What public forks register. direct_ems, direct_mats and direct_mis are names of Zaragoza's course, too, whose camera
-// is upstream's; direct_whitted and pointlight are that course's alone. parallelogram does not tell the course of 2022:
-// Opal's own scenes have it with any integrator.
+// What public forks register. Zaragoza's course has ETH's names direct_* with upstream's camera; its pointlight, which
+// has a radiance, tells it. parallelogram does not tell the course of 2022: Opal's own scenes have it with any
+// integrator.
 const std::vector<DialectName> names_of_dialects = {
-    {Dialect::upstream, "integrator", "direct_whitted"},
-    {Dialect::upstream, "emitter", "pointlight"},
+    {Dialect::upstream, "emitter", "pointlight", "radiance"},
     {Dialect::course, "integrator", "direct_lighting"},
     {Dialect::course, "integrator", "path_tracer_recursive"},
     {Dialect::eth, "integrator", "direct"},
     {Dialect::eth, "integrator", "direct_ems"},
     {Dialect::eth, "integrator", "direct_mats"},
     {Dialect::eth, "integrator", "direct_mis"},
+    {Dialect::eth, "integrator", "direct_whitted"},
+    {Dialect::eth, "emitter", "pointlight", "power"},
     {Dialect::eth, "integrator", "av"},
     {Dialect::eth, "integrator", "mipath"},
     {Dialect::eth, "luminaire", ""},
@@ -37,23 +38,37 @@ const std::vector<DialectName> names_of_dialects = {
 // The first name of each dialect, in document order.
 using FirstNames = std::array<std::string, 3>;
 
+std::vector<XmlNode> children_of(const XmlNode &node) {
+    return node.children([](const SourcePlace &, const std::string &) {}); // mistakes are told by the parsers
+}
+
+bool has_property(const XmlNode &object, const std::string &name) {
+    const std::vector<XmlNode> children = children_of(object);
+    return std::any_of(children.begin(), children.end(),
+                       [&](const XmlNode &child) { return child.attribute("name") == name; });
+}
+
 // Whether the node bears that name. A property does in a diffuse bsdf alone: other materials differ more than by names.
 bool bears(const DialectName &row, const XmlNode &node, const XmlNode &parent) {
     if (node.tag() != row.tag)
         return false;
     if (row.is_property())
         return parent.tag() == "bsdf" && parent.attribute("type") == "diffuse" && node.attribute("name") == row.name;
-    return row.name.empty() || node.attribute("type") == row.name;
+    return (row.name.empty() || node.attribute("type") == row.name) &&
+           (row.with.empty() || has_property(node, row.with));
 }
 
 std::string text_of(const DialectName &row) {
     if (row.is_property())
         return fmt::format("property '{}'", row.name);
-    return row.name.empty() ? fmt::format("tag <{}>", row.tag) : fmt::format("{} '{}'", row.tag, row.name);
+    if (row.name.empty())
+        return fmt::format("tag <{}>", row.tag);
+    const std::string with = row.with.empty() ? "" : fmt::format(" with a '{}'", row.with);
+    return fmt::format("{} '{}'{}", row.tag, row.name, with);
 }
 
 void find_names(const XmlNode &parent, FirstNames &found) {
-    for (const XmlNode &node : parent.children([](const SourcePlace &, const std::string &) {})) {
+    for (const XmlNode &node : children_of(parent)) {
         for (const DialectName &row : names_of_dialects) {
             std::string &first = found[size_t(row.dialect)];
             if (first.empty() && bears(row, node, parent))

@@ -18,8 +18,9 @@ std::string known_property(const XmlNode &object, const std::string &name);
 // A name that only scenes of one dialect have.
 struct DialectName {
     Dialect dialect;
-    std::string tag;  // of an object, or "color" for a property
-    std::string name; // its type, or the property's name; empty: the tag itself
+    std::string tag;    // of an object, or "color" for a property
+    std::string name;   // its type, or the property's name; empty: the tag itself
+    std::string with{}; // a property that the object must have, where types of two dialects share a name; empty: none
     bool is_property() const { return tag == "color"; }
 };
 std::span<const DialectName> dialect_names();
