@@ -188,16 +188,16 @@ int run_renders(const RenderBenchOptions &o) {
         print_text(row.text());
         return row;
     };
-    const auto share_of = [&](const char *stage) {
+    const auto race_twice = [&](const char *stage) {
         BuildOptions twice = build;
         twice.repeat_stage = stage;
         const RaceFigures row = race(fmt::format("{} twice", stage), flat, twice);
         report["twice"][stage] = row.json();
-        return row.race.time.median - 1;
+        return row.race;
     };
     TimeShares shares;
-    shares.traversal = share_of("traversal");
-    shares.sampling = share_of("sampling");
+    shares.traversal = share_of(race_twice("traversal"));
+    shares.sampling = share_of(race_twice("sampling"));
     print_text(shares.text());
     report["share"] = shares.json();
     for (int lanes : {1, 4, 8, 16}) {
@@ -206,7 +206,7 @@ int run_renders(const RenderBenchOptions &o) {
         BuildOptions other = build;
         other.lanes = lanes;
         report["widths"][std::to_string(lanes)] =
-            race(fmt::format("{} lanes", lanes), flatten(scene, lanes), other).json();
+            race(fmt::format("{} lane{}", lanes, lanes == 1 ? "" : "s"), flatten(scene, lanes), other).json();
     }
     SceneDescription anything = scene;
     anything.strategy.specialise = false;
