@@ -1,6 +1,7 @@
 #include "sweep/auto.h"
 
 #include "base/json.h"
+#include "base/progress.h"
 
 #include <fmt/format.h>
 
@@ -12,9 +13,11 @@ AutoChoice choose_strategy(const SceneDescription &scene, const Device &device, 
     constexpr double pilot_seconds = 0.25;
     const std::vector<Candidate> candidates = parse_strategies(scene, {"course"}, {});
     std::vector<Pilot> pilots;
+    RunningProgress progress("pilots");
     for (const Candidate &c : candidates) {
         CompiledStrategy strategy(device, c, sources, device.info.type == "cpu" ? Clock::cpu : Clock::kernel);
         pilots.push_back(run_pilot(strategy, seed, pilot_seconds));
+        progress.update(double(pilots.size()), double(candidates.size()));
     }
     const std::vector<double> costs = pilot_costs(pilots);
     AutoChoice choice;
