@@ -124,7 +124,7 @@ bool is_mitsuba(std::string_view root) {
     const std::string_view tag = root.substr(0, root.find('>'));
     if (!contains(tag, "version"))
         return false;
-    for (std::string_view own : {"<shape", "<film", "<default", "<include", "<rgb", "<spectrum", "to_world"})
+    for (std::string_view own : {"<shape", "<film", "<sensor", "<default", "<include", "<rgb", "<spectrum", "to_world"})
         if (contains(root, own))
             return true;
     return false;
@@ -172,7 +172,7 @@ FileKindRow kind_of_text(std::string_view text) {
         return contains(text, "\"asset\"") && contains(text, "\"version\"")
                    ? FileKindRow{FileKind::other, "a glTF scene", by_assimp}
                    : FileKindRow{FileKind::text, "JSON", no_text_format};
-    if (first_word(start) == "solid" && contains(start, "facet"))
+    if (first_word(start) == "solid" && (contains(start, "facet") || contains(start, "endsolid")))
         return {FileKind::other, "an STL mesh", by_assimp};
     const std::string_view statement = first_statement(start);
     if (statement == "newmtl")

@@ -25,21 +25,35 @@ bool is_file(const fs::path &path) {
     return fs::is_regular_file(path, ignored);
 }
 
+// A '#' behind a blank seems to begin a comment; names may hold one.
+std::string without_comment(const std::string &name) {
+    for (size_t at = name.find('#', 1); at != std::string::npos; at = name.find('#', at + 1))
+        if (name[at - 1] == ' ' || name[at - 1] == '\t')
+            return name.substr(0, name.find_last_not_of(" \t", at - 1) + 1);
+    return name;
+}
+
+std::string without_quotes(const std::string &name) {
+    return name.size() > 2 && name.front() == '"' && name.back() == '"' ? name.substr(1, name.size() - 2) : name;
+}
+
 // The files of a statement `mtllib`: its whole rest is one name, which may hold blanks; where there is no such file,
 // its words are names.
 std::vector<fs::path> files_of(const ObjLibrary &library, const fs::path &obj) {
-    if (const fs::path whole = beside(obj, library.names); is_file(whole))
-        return {whole};
+    const std::string names = without_comment(library.names);
+    for (const std::string &name : {library.names, names})
+        if (const fs::path whole = beside(obj, without_quotes(name)); is_file(whole))
+            return {whole};
     std::vector<fs::path> files;
     const std::string blanks = " \t";
-    for (size_t at = library.names.find_first_not_of(blanks); at != std::string::npos;) {
-        const size_t end = std::min(library.names.find_first_of(blanks, at), library.names.size());
-        const std::string word = library.names.substr(at, end - at);
+    for (size_t at = names.find_first_not_of(blanks); at != std::string::npos;) {
+        const size_t end = std::min(names.find_first_of(blanks, at), names.size());
+        const std::string word = without_quotes(names.substr(at, end - at));
         if (const fs::path file = beside(obj, word); is_file(file))
             files.push_back(file);
         else
             warn(fmt::format("{}: no such material library: {}", library.place.text(), file.string()));
-        at = library.names.find_first_not_of(blanks, end);
+        at = names.find_first_not_of(blanks, end);
     }
     return files;
 }
@@ -55,16 +69,19 @@ Materials read_libraries(const ObjFile &obj, const fs::path &file) {
     return materials;
 }
 
-// The material of that name, or without the comment that a name seems to end with; null if there is none.
+// The material of that name, or without the comment that one of the two names seems to end with; null if there is none.
 const MtlMaterial *find_material(const Materials &materials, const std::string &name) {
     for (std::string tried = name;;) {
         if (const auto found = materials.find(tried); found != materials.end())
             return &found->second;
         const size_t comment = tried.rfind(" #");
         if (comment == std::string::npos)
-            return nullptr;
+            break;
         tried.erase(std::min(tried.find_last_not_of(' ', comment) + 1, comment));
     }
+    const auto found = std::find_if(materials.begin(), materials.end(),
+                                    [&](const auto &entry) { return without_comment(entry.first) == name; });
+    return found == materials.end() ? nullptr : &found->second;
 }
 
 // The triangles of each material, by index, in the order of the materials' first use. OPAL_NONE: of those before the
@@ -135,7 +152,7 @@ std::vector<Mesh> meshes_by_material(ObjFile &&obj, const fs::path &file, const 
             own.name += ": " + used.name;
             if (const MtlMaterial *material = find_material(materials, used.name))
                 add_surface(*material, options, own, visible);
-            else
+            else if (!options.own_bsdf)
                 warn(fmt::format("{}: no material '{}' in the libraries: its triangles are grey, diffuse ({})",
                                  used.place.text(), used.name, shapes[i].triangles.size()));
         }

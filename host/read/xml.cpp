@@ -108,6 +108,9 @@ XmlDocument::XmlDocument(const std::filesystem::path &file, std::string text)
 }
 
 XmlNode XmlDocument::root() const {
+    const auto first = document_.begin();
+    if (first != document_.end() && std::all_of(first, document_.end(), is_text))
+        throw XmlError(place(ptrdiff_t(text_.find_first_not_of(" \t\r\n"))), "is no XML: it holds no tags");
     std::vector<XmlNode> roots = elements_of(*this, document_, {});
     if (roots.empty())
         throw XmlError(place(0), "holds no <scene>");
