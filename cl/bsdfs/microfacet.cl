@@ -1,9 +1,11 @@
 // microfacet: rough dielectric coat (Beckmann) over a diffuse base, one-sided, as Nori has it.
 //   <bsdf type="microfacet"> <float name="alpha" value="0.1"/> <color name="kd" value="0.5"/> ... </bsdf>
 // f = kd/pi + ks D(h) F(wi.h) G / (4 cos_i cos_o cos_h), with D the density of h over solid angle (hence the last
-// cosine), G Smith's rational approximation for Beckmann (Walter et al. 2007, section 5.2).
+// cosine), G Smith's rational approximation for Beckmann (Walter et al. 2007, section 5.2). At alpha 0 the coat is a
+// mirror that reflects ks F: it is sampled as a discrete direction, and eval and pdf are those of the base.
 #include "bsdfs/fresnel.cl"
 #include "bsdfs/interface.cl"
+#include "bsdfs/microfacet.h"
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "core/rng.cl"
@@ -31,10 +33,19 @@ static real microfacet_coat(microfacet_bsdf b, v3 wi, v3 wo, v3 h, real divisor)
     return microfacet_ks(b) * f * microfacet_g1(wi, h, b.alpha) * microfacet_g1(wo, h, b.alpha) / divisor;
 }
 
+// The lanes whose coat is a mirror. Asked where OPAL_HAS_mirror_coats.
+static mask microfacet_is_mirror(microfacet_bsdf b) { return b.alpha < (real)(MICROFACET_MIRROR_ALPHA); }
+
+// D, the density of h over solid angle; 0 of a mirror.
+static real microfacet_d(microfacet_bsdf b, v3 h) {
+    if (!OPAL_HAS_mirror_coats) return square_to_beckmann_pdf(h, b.alpha);
+    return microfacet_is_mirror(b) ? (real)(0) : square_to_beckmann_pdf(h, b.alpha);
+}
+
 static v3 microfacet_eval(microfacet_bsdf b, v3 wi, v3 wo) {
     mask above = wi.z > 0 & wo.z > 0;
     v3 h = v3_normalize(v3_add(wi, wo));
-    real coat = microfacet_coat(b, wi, wo, h, 4 * wi.z * wo.z * h.z) * square_to_beckmann_pdf(h, b.alpha);
+    real coat = microfacet_coat(b, wi, wo, h, 4 * wi.z * wo.z * h.z) * microfacet_d(b, h);
     v3 f = v3_add(v3_scale(b.kd, (real)(INV_PI)), v3_all(coat));
     return v3_pick(above, f, v3_all((real)(0)));
 }
@@ -43,7 +54,7 @@ static v3 microfacet_eval(microfacet_bsdf b, v3 wi, v3 wo) {
 // coat draws some directions below the surface.
 static real microfacet_pdf(microfacet_bsdf b, v3 wi, v3 wo) {
     v3 h = v3_normalize(v3_add(wi, wo));
-    real coat = square_to_beckmann_pdf(h, b.alpha) / (4 * fabs(v3_dot(h, wo)));
+    real coat = microfacet_d(b, h) / (4 * fabs(v3_dot(h, wo)));
     real coat_chance = microfacet_coat_chance(b);
     real density = coat_chance * coat + (1 - coat_chance) * square_to_cosine_hemisphere_pdf(wo);
     return (wi.z > 0 & wo.z > 0) ? density : (real)(0);
@@ -57,11 +68,15 @@ static BsdfSample microfacet_sample(microfacet_bsdf b, v3 wi, v2 u, real lobe) {
     v3 mirrored = v3_sub(v3_scale(facet, 2 * v3_dot(wi, facet)), wi);
     v3 wo = v3_pick(coated, mirrored, square_to_cosine_hemisphere(u));
     v3 h = v3_pick(coated, facet, v3_normalize(v3_add(wi, wo)));
-    real d = square_to_beckmann_pdf(h, b.alpha);
+    real d = microfacet_d(b, h);
     real base = wo.z * INV_PI;
     real density = coat_chance * d / (4 * fabs(v3_dot(h, wo))) + (1 - coat_chance) * base;
     v3 f_cos = v3_add(v3_scale(b.kd, base), v3_all(microfacet_coat(b, wi, wo, h, 4 * wi.z * h.z) * d));
     mask kept = wi.z > 0 & wo.z > 0 & density > 0;
     v3 weight = v3_pick(kept, v3_scale(f_cos, 1 / density), v3_all((real)(0)));
-    return bsdf_sample_of(wo, weight, kept ? density : (real)(0), (real)(1), NO_LANES);
+    if (!OPAL_HAS_mirror_coats) return bsdf_sample_of(wo, weight, kept ? density : (real)(0), (real)(1), NO_LANES);
+    mask specular = coated & microfacet_is_mirror(b) & wi.z > 0;
+    weight = v3_pick(specular, v3_all(microfacet_coat(b, wi, wo, h, coat_chance)), weight);
+    kept = kept & !specular;
+    return bsdf_sample_of(wo, weight, kept ? density : (real)(0), (real)(1), specular);
 }

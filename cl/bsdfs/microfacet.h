@@ -5,9 +5,12 @@
 #include "shared/parameters.h"
 
 #define OPAL_BSDF_microfacet(PARAMETER) \
-    PARAMETER(NUMBER, alpha, "alpha", 0.1, ABOVE(0), "root mean square slope of the facets (Beckmann)") \
+    PARAMETER(NUMBER, alpha, "alpha", 0.1, AT_LEAST(0), "root mean square slope of facets (Beckmann); 0: a mirror") \
     PARAMETER(NUMBER, int_ior, "intIOR", 1.5046, ABOVE(0), "index of refraction of the coat") \
     PARAMETER(NUMBER, ext_ior, "extIOR", 1.000277, ABOVE(0), "index of refraction outside") \
     PARAMETER(COLOR, kd, "kd", 0.5, BETWEEN(0, 1), "diffuse reflectance; the coat gets 1 - max(kd)")
+
+// Below this alpha the coat is a mirror: its lobe is narrower than the rounding of directions in floats, 2^-24.
+#define MICROFACET_MIRROR_ALPHA 6e-8f
 
 #endif

@@ -27,7 +27,7 @@ static mask direct_lighting_step(const Scene *scene, Path *path, Hit hit, mask a
     mask discrete = bsdf_is_discrete(scene, s.bsdf);
     mask by_bsdf = active, by_light = active & !discrete;
     v2 u = path_draw(scene, path, DIM_LOBE);
-    if (CHOSEN(scene, lighting, emitter)) by_bsdf = active & discrete;
+    if (CHOSEN(scene, lighting, emitter)) by_bsdf = OPAL_HAS_mirror_coats ? active : active & discrete;
     if (CHOSEN(scene, lighting, mis) && CHOSEN(scene, mis, one_sample)) {
         Choice light = choose((real)(R(0.5)), u.y);
         by_bsdf = active & (discrete | !light.first);
@@ -37,6 +37,7 @@ static mask direct_lighting_step(const Scene *scene, Path *path, Hit hit, mask a
     if (CHOSEN(scene, lighting, bsdf)) by_light = NO_LANES;
     DirectLight direct;
     active = interact(scene, path, &s, by_light, by_bsdf, u.x, &direct);
+    if (CHOSEN(scene, lighting, emitter) && OPAL_HAS_mirror_coats) active = active & path->specular;
     path->radiance = v3_add(path->radiance, visible_light(scene, direct));
     return active;
 }

@@ -23,7 +23,12 @@ static mask whitted_step(const Scene *scene, Path *path, Hit hit, mask active) {
     Choice survives = choose((real)(WHITTED_SURVIVAL), u.y);
     path->throughput = v3_scale(path->throughput, specular ? 1 / survives.probability : (real)(1));
     DirectLight direct;
-    mask followed = interact(scene, path, &s, active & !specular, specular, u.x, &direct);
+    mask by_bsdf = OPAL_HAS_mirror_coats ? active : specular;
+    mask followed = interact(scene, path, &s, active & !specular, by_bsdf, u.x, &direct);
+    if (OPAL_HAS_mirror_coats) { // a BSDF that is not wholly discrete may have drawn its mirror
+        path->throughput = v3_scale(path->throughput, specular ? (real)(1) : 1 / survives.probability);
+        followed = followed & path->specular;
+    }
     path->radiance = v3_add(path->radiance, visible_light(scene, direct));
     return followed & survives.first;
 }

@@ -20,6 +20,8 @@
     OPAL_EMITTERS(OPAL_EMITTER_FEATURE) \
     OPAL_SHAPES(OPAL_SHAPE_FEATURE) \
     OPAL_CAMERAS(OPAL_CAMERA_FEATURE) \
+    /* some microfacet coat has alpha 0: its BSDF has a density and single directions */ \
+    OPAL_FEATURE_ROW(mirror_coats, "mirror_coats") \
     /* several emitters, one of which is chosen; else emitter 0 is meant */ \
     OPAL_FEATURE_ROW(many_emitters, "many_emitters") \
     /* some mesh emits on both sides */ \

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <chrono>
 
 namespace opal {
 
 namespace {
 
 std::string kept;
+const auto start = std::chrono::steady_clock::now(); // static data begin before main
 
 bool is_plain(unsigned char c) {
     return std::isalnum(c) || std::string("_-./=,:+@%").find(char(c)) != std::string::npos;
@@ -38,5 +40,7 @@ void set_command_line(int argc, const char *const *argv) {
 }
 
 const std::string &command_line() { return kept; }
+
+double seconds_since_start() { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); }
 
 } // namespace opal

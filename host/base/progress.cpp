@@ -12,7 +12,7 @@ namespace opal {
 
 namespace {
 
-constexpr double bar_period = 0.1, line_period = 5; // seconds
+constexpr double bar_period = 0.1, line_period = 5, first_period = 1; // seconds
 constexpr const char *clear_line = "\r\033[K";
 
 double since(std::chrono::steady_clock::time_point start) {
@@ -70,6 +70,37 @@ void Progress::update(double done) {
     said_ = Clock::now();
     const std::string line = progress_line(what_, unit_, done, total_, since(start_), bar_);
     show(bar_ ? clear_line + line : line + "\n");
+}
+
+RunningSeconds::RunningSeconds(std::string what) {
+    if (!is_quiet())
+        thread_ = std::thread([this, what = std::move(what)] { run(what); });
+}
+
+RunningSeconds::~RunningSeconds() {
+    if (!thread_.joinable())
+        return;
+    {
+        const std::lock_guard lock(mutex_);
+        ended_ = true;
+    }
+    ended_changed_.notify_one();
+    thread_.join();
+}
+
+void RunningSeconds::run(const std::string &what) {
+    const bool bar = isatty(STDERR_FILENO);
+    const auto start = std::chrono::steady_clock::now();
+    double next = first_period; // seconds since the start
+    std::unique_lock lock(mutex_);
+    const auto wait = [&] { return std::chrono::duration<double>(next - since(start)); };
+    while (!ended_changed_.wait_for(lock, wait(), [&] { return ended_; })) {
+        const std::string line = fmt::format("{:<8}{:.0f} s", what, since(start));
+        show(bar ? clear_line + line : line + "\n");
+        next += bar ? first_period : line_period;
+    }
+    if (bar && next > first_period)
+        show(clear_line);
 }
 
 } // namespace opal

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <string>
+#include <thread>
 
 namespace opal {
 
@@ -22,6 +25,23 @@ private:
     double total_;
     bool bar_, silent_;
     Clock::time_point start_, said_;
+};
+
+// The seconds of a computation that tells nothing of itself, such as a driver's compiler, from the first second on: by
+// a thread of its own, "compile 3 s", in place on a terminal, a line every few seconds elsewhere, nothing with --quiet.
+class RunningSeconds {
+public:
+    explicit RunningSeconds(std::string what);
+    ~RunningSeconds(); // clears the terminal's line
+    RunningSeconds(const RunningSeconds &) = delete;
+    RunningSeconds &operator=(const RunningSeconds &) = delete;
+
+private:
+    void run(const std::string &what);
+    std::mutex mutex_;
+    std::condition_variable ended_changed_;
+    bool ended_ = false;
+    std::thread thread_; // none with --quiet
 };
 
 // "render  45 % [#########           ]  3.21 M samples/s  12 s left". seconds: since the start; bar: draw the bar.

@@ -3,9 +3,12 @@
 
 namespace opal {
 
-constexpr int exit_interrupted = 130; // exit code of an interrupted render whose image was written
-
-void watch_interrupts(); // from now on SIGINT and SIGTERM set the flag that interrupted() returns
+// From now on SIGINT, SIGTERM and SIGHUP set the flag that interrupted() returns; SIGHUP not under nohup.
+void watch_interrupts();
 bool interrupted();
+
+// The exit code of a command that was interrupted and has kept its results: 128 + the signal, as shells have it. 130
+// for Ctrl-C, 143 for SIGTERM, 129 for SIGHUP.
+int interrupt_exit_code();
 
 } // namespace opal

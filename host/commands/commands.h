@@ -12,6 +12,7 @@ Command extremes_command();
 Command inspect_command();
 Command probe_platform_command(); // hidden, in ask_driver.cpp; see device/ask_driver.h
 Command render_command();
+Command scene_for_command();
 Command selftest_command();
 Command selftest_group_command(); // hidden, in selftest.cpp
 Command sweep_command();

@@ -5,6 +5,7 @@
 #include "commands/options.h"
 #include "flatten/features.h"
 #include "flatten/precision_warnings.h"
+#include "flatten/scene_warnings.h"
 #include "scene/options.h"
 
 #include <fmt/format.h>
@@ -194,8 +195,12 @@ int run_inspect(const InspectOptions &options) {
     print_strategy(scene, lanes);
     print_buffers(flat);
     print_features(flat.features);
+    for (const std::string &line : scene_warnings(scene))
+        warn(line);
     for (const std::string &line : precision_warnings(scene, flat))
         warn(line);
+    for (const std::string &line : scene_notes(scene, false))
+        note(line);
     if (options.bench)
         print_savings(options, scene);
     return 0;

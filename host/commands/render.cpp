@@ -8,10 +8,12 @@
 #include "commands/commands.h"
 #include "commands/options.h"
 #include "flatten/flat_scene.h"
+#include "flatten/scene_warnings.h"
 #include "render/render_film.h"
 #include "render/report.h"
 #include "scene/options.h"
 #include "selftest/selftest.h"
+#include "strategies/combinations.h"
 #include "sweep/auto.h"
 
 #include <fmt/format.h>
@@ -22,7 +24,7 @@ namespace {
 
 struct Options {
     SceneOptions scene;
-    std::string device, out, json, layers, time, target_error, strategy;
+    std::string device, out, json, layers, time, time_limit, target_error, strategy;
     unsigned spp = 0, width = 0, height = 0; // 0: the scene's
     unsigned seed = 0;
     bool no_png = false, quiet = false, verbose = false;
@@ -39,12 +41,14 @@ private:
 void tell_what_runs(const SceneDescription &scene, const FlatScene &flat, const DevicePick &pick, int lanes,
                     unsigned seed) {
     std::string strategy;
-    for (int axis = 0; axis < AXIS_COUNT; axis++)
+    for (int axis : acting_axes(scene))
         strategy += fmt::format("{}{} {}", axis ? ", " : "", axes()[axis].name,
                                 axis == AXIS_integrator ? integrator_name(scene)
                                                         : axes()[axis].choices[scene.strategy[axis]].name);
-    info(fmt::format("scene   {}: {} meshes, {} triangles, {} emitters, {} x {} pixels, {} spp, seed {}",
-                     scene.file.string(), scene.meshes.size(), flat.triangles.size(), flat.emitters.size(),
+    const auto count = [](size_t n, const char *what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); };
+    info(fmt::format("scene   {}: {}, {}, {}, {} x {} pixels, {} spp, seed {}", scene.file.string(),
+                     scene.meshes.size() == 1 ? "1 mesh" : fmt::format("{} meshes", scene.meshes.size()),
+                     count(flat.triangles.size(), "triangle"), count(flat.emitters.size(), "emitter"),
                      scene.camera.width, scene.camera.height, scene.spp, seed));
     info("how     " + strategy);
     info(fmt::format("device  {}, {} lane{}, math {}", text_of(pick), lanes, lanes == 1 ? "" : "s",
@@ -55,6 +59,8 @@ StopRule stop_rule(const Options &o) {
     StopRule rule;
     if (!o.time.empty())
         rule.seconds = parse_seconds(o.time);
+    if (!o.time_limit.empty())
+        rule.wall_seconds = parse_seconds(o.time_limit);
     if (!o.target_error.empty())
         rule.relative_error = parse_fraction(o.target_error);
     return rule;
@@ -103,6 +109,11 @@ Request prepare(const Options &o) {
         if (!file.empty())
             check_writable(file);
     request.load_seconds = load.seconds();
+    constexpr size_t most_faces = 300'000; // 0.03 s; `opal inspect` looks at all
+    for (const std::string &line : scene_warnings(scene, most_faces))
+        warn(line);
+    for (const std::string &line : scene_notes(scene, o.spp || request.rule.given()))
+        note(line);
     return request;
 }
 
@@ -118,6 +129,9 @@ int report(const Request &request, const RenderedFilm &rendered, const RenderRep
         json["auto"] = choice->json();
     if (request.rule.given())
         json["stop"] = stop.json();
+    json["interrupted"] = !rendered.stopped.complete;
+    if (request.spp > 0 || !rendered.stopped.complete) // else the rule alone decides
+        json["asked_spp"] = rendered.stopped.spp;
     add_metadata(image, json, command_line());
     const Stopwatch write;
     write_exr(image, request.exr);
@@ -137,7 +151,7 @@ int report(const Request &request, const RenderedFilm &rendered, const RenderRep
     if (rendered.stopped.complete)
         return 0;
     warn(fmt::format("interrupted: the image holds {:.4g} of {} samples a pixel", render.spp(), rendered.stopped.spp));
-    return exit_interrupted;
+    return interrupt_exit_code();
 }
 
 int run(const Options &o) {
@@ -197,6 +211,12 @@ Command render_command() {
                           "  A pilot of other samples decides how many, so that the image stays unbiased",
                   .type = "ERROR",
                   .excludes = "--time"},
+                 {.flags = "--time-limit",
+                  .target = &o->time_limit,
+                  .help = "Stop rendering this long after the start of the process, by the wall clock: loading and "
+                          "compiling count, writing comes after; --spp is then the most",
+                  .type = "TIME",
+                  .excludes = "--target-error"},
                  {.flags = "--strategy",
                   .target = &o->strategy,
                   .help = "auto: short pilots find which way to sample light costs least on this scene and device",

@@ -159,7 +159,7 @@ int run_part(Part part, const SweepPlan &plan, const DevicePick &pick, const std
         part(plan, device, candidates, record);
     } catch (const Interrupted &) {
         warn("interrupted: the same command goes on where it stopped");
-        return exit_interrupted;
+        return interrupt_exit_code();
     }
     return 0;
 }

@@ -155,7 +155,7 @@ int run(const Options &o) {
         render.image.metadata["opal.dialect"] = name_of(scene.dialect);
     if (renders.size() < strategies.size()) {
         warn(fmt::format("interrupted after {} of {} strategies: no verdict", renders.size(), strategies.size()));
-        return exit_interrupted;
+        return interrupt_exit_code();
     }
     if (clock.left() < -0.25 * o.budget)
         warn(fmt::format(

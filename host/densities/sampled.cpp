@@ -49,7 +49,7 @@ double lobe_width(KernelProbe &probe, unsigned id, Vec3 wi) {
     const Planes drawn = probe.bsdf_sample(id, wi, probe.numbers(4096, {}));
     std::vector<double> angles;
     for (size_t i = 0; i < drawn.count; i++)
-        if (!is_black(drawn.vec3(BSDF_WEIGHT_R, i)))
+        if (!is_black(drawn.vec3(BSDF_WEIGHT_R, i)) && drawn.at(BSDF_DISCRETE, i) == 0)
             angles.push_back(2 *
                              std::asin(std::min(1.0, length(drawn.vec3(BSDF_WO_X, i) - Vec3{-wi.x, -wi.y, wi.z}) / 2)));
     if (angles.empty())

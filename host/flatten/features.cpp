@@ -47,11 +47,23 @@ public:
 #undef OPAL_DECIDE_CAMERA
 
     Decision bsdf(uint kind) const {
+        return bsdfs([&](uint at) { return scene.bsdfs[at] == kind; });
+    }
+
+    Decision mirror_coats() const {
+        return bsdfs([&](uint at) {
+            return scene.bsdfs[at] == BSDF_microfacet &&
+                   record_of<bsdf_microfacet_record>(scene.bsdfs, at).alpha.value < MICROFACET_MIRROR_ALPHA;
+        });
+    }
+
+    // Meshes that have such a BSDF; is_meant: of a record, by its first word.
+    template <class Is> Decision bsdfs(Is is_meant) const {
         if (!integrator.has(OPAL_ASKS_BSDFS))
             return {false, "this integrator asks no BSDF"};
         const auto has = [&](const MeshRecord &mesh) {
             bool found = false;
-            visit_bsdfs(scene, mesh.bsdf, [&](uint at) { found = found || scene.bsdfs[at] == kind; });
+            visit_bsdfs(scene, mesh.bsdf, [&](uint at) { found = found || is_meant(at); });
             return found;
         };
         return counted(std::size_t(std::count_if(scene.meshes.begin(), scene.meshes.end(), has)), scene.meshes.size(),

@@ -108,7 +108,7 @@ private:
     void check(const bsdf_microfacet_record &microfacet, const SourcePlace &place) {
         if (microfacet.int_ior.value == microfacet.ext_ior.value)
             add_warning(place, "intIOR and extIOR are both {:g}: the coat reflects nothing", microfacet.int_ior.value);
-        if (microfacet.alpha.value < min_alpha)
+        if (microfacet.alpha.value < min_alpha && microfacet.alpha.value >= MICROFACET_MIRROR_ALPHA)
             add_warning(
                 place,
                 "alpha {:g} is below {:g}, the least that was tested: a mirror or dielectric is what it looks like",

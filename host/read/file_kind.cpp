@@ -1,5 +1,6 @@
 #include "read/file_kind.h"
 
+#include "base/command_line.h"
 #include "base/error.h"
 #include "base/read_file.h"
 
@@ -196,6 +197,14 @@ const char *name_of(FileKind wanted) {
     }
 }
 
+// The advice with the file's name in it, as a shell takes it.
+std::string advice_for(const std::filesystem::path &file, std::string advice) {
+    const std::string placeholder = "FILE", name = shell_word(file.string());
+    if (const size_t at = advice.find(placeholder); at != std::string::npos)
+        advice.replace(at, placeholder.size(), name);
+    return advice;
+}
+
 // An old Macintosh's line end; carriage returns before a line feed, or at the end of the file, are none.
 size_t lone_carriage_return(std::string_view text) {
     for (size_t at = text.find('\r'); at != text.npos; at = text.find('\r', at)) {
@@ -228,7 +237,7 @@ FileKindRow kind_of(std::string_view bytes) {
 
 std::string wrong_kind_text(const std::filesystem::path &file, const FileKindRow &found, FileKind wanted) {
     return fmt::format("{}: is {}, not {}{}{}", file.string(), found.name, name_of(wanted),
-                       found.advice.empty() ? "" : "; ", found.advice);
+                       found.advice.empty() ? "" : "; ", advice_for(file, found.advice));
 }
 
 std::string read_text_file(const std::filesystem::path &file, FileKind wanted) {
@@ -239,9 +248,8 @@ std::string read_text_file(const std::filesystem::path &file, FileKind wanted) {
     if (text.starts_with("\xef\xbb\xbf"))
         text.erase(0, 3);
     if (lone_carriage_return(text) != text.npos)
-        throw Error(fmt::format("{}: lines end with a carriage return alone, as on old Macintoshes; "
-                                "convert them: tr '\\r' '\\n' < FILE > NEW",
-                                file.string()));
+        throw Error(fmt::format("{}: lines end with a carriage return alone, as on old Macintoshes; {}", file.string(),
+                                advice_for(file, "convert them: tr '\\r' '\\n' < FILE > NEW")));
     return text;
 }
 

@@ -12,6 +12,7 @@
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
+#include <cmath>
 #include <istream>
 #include <limits>
 #include <unordered_map>
@@ -41,10 +42,10 @@ bool has_area(const std::array<Vec3, 3> &p, double rounding) {
 }
 
 // Statements of OBJ that hold no surface, or say how to show one, which Opal decides otherwise.
-constexpr std::string_view known_statements[] = {
-    "vp",       "cstype",   "deg",   "bmat",  "step",       "parm",      "trim", "hole",   "scrv",
-    "sp",       "end",      "con",   "s",     "mg",         "bevel",     "lod",  "maplib", "usemap",
-    "c_interp", "d_interp", "ctech", "stech", "shadow_obj", "trace_obj", "f"}; // `f`: without corners
+constexpr std::string_view known_statements[] = {"vp",       "cstype",   "deg",   "bmat",  "step",       "parm",
+                                                 "trim",     "hole",     "scrv",  "sp",    "end",        "con",
+                                                 "s",        "mg",       "bevel", "lod",   "maplib",     "usemap",
+                                                 "c_interp", "d_interp", "ctech", "stech", "shadow_obj", "trace_obj"};
 constexpr std::string_view flat_statements[] = {"l", "p", "curv", "curv2", "surf"};
 
 template <size_t Count> bool holds(const std::string_view (&list)[Count], std::string_view word) {
@@ -126,8 +127,7 @@ void ObjReader::read_statements() {
     libraries_.clear();
     positions_so_far_ = normals_so_far_ = uvs_so_far_ = 0;
     tinyobj::callback_t callbacks;
-    // The numbers come from the pass in front: the library adds up digit by digit, and is wrong in the last bits of
-    // half of all numbers with six decimals.
+    // The numbers are those of numbers().
     callbacks.vertex_cb = [](void *data, double, double, double, double) { of(data).add_position(); };
     callbacks.normal_cb = [](void *data, double, double, double) { of(data).add_normal(); };
     callbacks.texcoord_cb = [](void *data, double, double, double) { of(data).add_uv(); };
@@ -327,7 +327,7 @@ void ObjReader::tell(const TriangleMesh &mesh) const {
         warn(fmt::format("{}: {}, kept {}", faces_.dropped.place.text(), dropped, mesh.triangles.size()));
 }
 
-// Keeps the entries that `triangles` refer to by index_of(triangle, corner), renumbered in the order of their first
+// Keeps the entries that corners of `triangles` refer to by index_of(corner), renumbered in the order of their first
 // use.
 template <class Entry, class Triangles, class IndexOf>
 std::vector<Entry> compact(const std::vector<Entry> &all, Triangles &triangles, const IndexOf &index_of) {

@@ -61,7 +61,6 @@ void ObjStatements::rewind() {
     position_ = 0;
     lines_ = 0;
     absent = further_numbers = {};
-    setg(nullptr, nullptr, nullptr);
 }
 
 std::string ObjStatements::rest() const {
@@ -158,16 +157,14 @@ void ObjStatements::take_numbers(size_t least, double (*parse)(std::string_view)
     if (words_.size() <= least)
         fail(words_[0], "'" + std::string(words_[0]) + "' needs " + (least == 1 ? "a number" : "three numbers"));
     numbers_ = {};
-    line_ = words_[0];
     for (size_t i = 1; i < std::min(words_.size(), 1 + numbers_.size()); ++i) {
         try {
             numbers_[i - 1] = parse(words_[i]);
         } catch (const Error &error) {
             fail(words_[i], error.what());
         }
-        (line_ += ' ') += words_[i];
     }
-    line_ += '\n';
+    (line_ = words_[0]) += " 0 0 0\n";
 }
 
 // v, v/vt, v//vn or v/vt/vn, with nothing or 0 for a vt or vn that is absent.

@@ -19,11 +19,12 @@ struct ObjTally {
     SourcePlace place;
 };
 
-// A stream of clean statements, a line each: `v`, `vn`, `vt` with three numbers at most, `f` with its corners.
-// Comments, repeated blanks, continued lines, further numbers, and indices of `vt` and `vn` that are 0 or left out stay
-// behind; other statements go to take_other. A line is made once the line before is read, so that a callback of the
-// library can ask for the statement that it is called for. Throws Error "file:line:col: ..." for a malformed number or
-// index.
+// A stream of clean statements, a line each: `v`, `vn`, `vt`, and `f` with its corners. Comments, repeated blanks,
+// continued lines, and indices of `vt` and `vn` that are 0 or left out stay behind; other statements go to take_other.
+// A line is made once the line before is read, so that a callback of the library can ask for the statement that it is
+// called for. Its numbers, too: the library gets zeros in their place. It would add up their digits one by one, so that
+// half of all numbers with six decimals are wrong in the last bits of a double, and call pow() for each digit beyond
+// the seventh. Throws Error "file:line:col: ..." for a malformed number or index.
 class ObjStatements : public std::streambuf {
 public:
     ObjStatements(std::string file, std::string_view text) : file_(std::move(file)), text_(text) {}
@@ -36,7 +37,7 @@ protected:
     // Of the present statement:
     using Words = std::vector<std::string_view>;
     const Words &words() const { return words_; }
-    const std::array<double, 3> &numbers() const { return numbers_; } // of `vn` and `vt` also infinite or NaN
+    const std::array<double, 3> &numbers() const { return numbers_; } // in `vn` and `vt` NaN where not finite
     std::string rest() const; // of the line behind the first word, with comments, without blanks at the ends
     SourcePlace place(std::string_view word) const;
     [[noreturn]] void fail(std::string_view word, const std::string &message) const;

@@ -1,9 +1,11 @@
 #include "render/render_film.h"
 
+#include "base/command_line.h"
 #include "base/progress.h"
 #include "base/signals.h"
 #include "flatten/flat_scene.h"
 
+#include <algorithm>
 #include <optional>
 
 namespace opal {
@@ -16,16 +18,21 @@ RenderedFilm render_film(const Device &device, const FlatScene &scene, const Ren
     watch_interrupts();
     const unsigned most = spp ? spp : most_samples;
     const double pixels = double(scene.settings.width) * scene.settings.height;
+    const double start = seconds_since_start();
     RenderedFilm rendered;
     {
         std::optional<Progress> progress; // none where nobody knows yet how much there is to do
         if (rule.seconds > 0)
             progress.emplace("render", rule.seconds, "s");
+        else if (rule.wall_seconds > 0)
+            progress.emplace("render", std::max(rule.wall_seconds - seconds_since_start(), 0.1), "s");
         else if (!rule.given())
             progress.emplace("render", most * pixels);
         rendered.stopped = render_until(renderer, rule, seed, most, [&](double samples, double kernel_seconds) {
             if (progress)
-                progress->update(rule.seconds > 0 ? kernel_seconds : samples * pixels);
+                progress->update(rule.seconds > 0        ? kernel_seconds
+                                 : rule.wall_seconds > 0 ? seconds_since_start() - start
+                                                         : samples * pixels);
             return !interrupted();
         });
     }

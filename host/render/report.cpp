@@ -1,5 +1,6 @@
 #include "render/report.h"
 
+#include "base/command_line.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/values.h"
@@ -85,7 +86,7 @@ nlohmann::json RenderReport::json() const {
 
 StopReport report_stop(const StopRule &rule, const StopResult &stopped, const RenderReport &render) {
     const FilmStatistics &s = render.statistics;
-    StopReport report{rule, stopped, render.spp(), render.seconds.render};
+    StopReport report{rule, stopped, render.spp(), render.seconds.render, seconds_since_start()};
     report.relative_error = s.empty_pixels         ? INFINITY
                             : s.mean_luminance > 0 ? s.stderr_luminance / s.mean_luminance
                                                    : 0;
@@ -99,7 +100,8 @@ StopReport report_stop(const StopRule &rule, const StopResult &stopped, const Re
 
 std::string StopReport::text() const {
     std::string words =
-        fmt::format("error   stopped after {:.4g} samples a pixel and {:.4g} s of kernel time: ", spp, seconds);
+        fmt::format("stop    after {:.4g} samples a pixel, {:.4g} s of kernel time, {:.4g} s since the start: ", spp,
+                    seconds, wall_seconds);
     words += !interval ? "the mean luminance of the whole image is unknown"
                        : fmt::format("relative standard error {:.3g} % of the mean luminance, which is in [{:.6g}, "
                                      "{:.6g}] with confidence {:g} %",
@@ -118,16 +120,24 @@ std::string StopReport::warning() const {
 }
 
 nlohmann::json StopReport::json() const {
-    const bool by_time = rule.seconds > 0;
-    nlohmann::json j = object({{"rule", by_time ? "time" : "target-error"},
-                               {"target", by_time ? rule.seconds : rule.relative_error},
-                               {"reached", by_time ? seconds : relative_error},
+    const bool by_error = rule.relative_error > 0, by_wall = rule.wall_seconds > 0;
+    nlohmann::json j = object({{"rule", by_error  ? "target-error"
+                                        : by_wall ? "time-limit"
+                                                  : "time"},
+                               {"target", by_error  ? rule.relative_error
+                                          : by_wall ? rule.wall_seconds
+                                                    : rule.seconds},
+                               {"reached", by_error  ? relative_error
+                                           : by_wall ? wall_seconds
+                                                     : seconds},
+                               {"kernel_seconds", seconds},
+                               {"wall_seconds", wall_seconds},
                                {"relative_error", relative_error},
                                {"confidence", confidence},
                                {"mean_luminance_interval", nullptr}});
     if (interval)
         j["mean_luminance_interval"] = *interval;
-    if (!by_time)
+    if (by_error)
         j.update(object({{"met", met}, {"pilot_spp", stopped.pilot_spp}, {"pilot_seconds", stopped.pilot_seconds}}));
     return j;
 }
@@ -143,6 +153,11 @@ std::vector<std::string> film_warnings(const RenderReport &render) {
                                     film.invalid, places));
     }
     const FilmStatistics &s = render.statistics;
+    const bool asks_lights = integrator_of(render.scene.strategy).has(OPAL_ASKS_LIGHTS);
+    if (s.samples > 0 && s.mean_rgb == std::array<double, 3>{} && asks_lights && has_light(render.scene))
+        lines.push_back(
+            fmt::format("{}: the image is black, although the scene has lights: none of {} samples found light",
+                        render.scene.file.string(), s.samples));
     if (s.empty_pixels == 0)
         return lines;
     const size_t pixels = film.count.size();

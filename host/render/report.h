@@ -43,6 +43,7 @@ struct StopReport {
     StopRule rule;
     StopResult stopped;
     double spp = 0, seconds = 0; // samples a pixel and kernel time of the film
+    double wall_seconds = 0;     // since the start of the process
     double relative_error = 0;   // of the mean luminance, as its standard error; infinite: unknown
     std::optional<std::array<double, 2>> interval{};
     bool met = true; // false: the target error was not reached

@@ -1,5 +1,7 @@
 #include "render/stop_rules.h"
 
+#include "base/command_line.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +13,11 @@ namespace {
 constexpr unsigned first_pilot_spp = 16;
 constexpr double pilot_share = 0.1, sample_margin = 1.1;
 constexpr double black_image_spp = 65536; // after so many black samples of each pixel the image is taken to be black
+
+bool out_of_time(const StopRule &rule, double kernel_seconds) {
+    return (rule.seconds > 0 && kernel_seconds >= rule.seconds) ||
+           (rule.wall_seconds > 0 && seconds_since_start() >= rule.wall_seconds);
+}
 
 } // namespace
 
@@ -41,7 +48,7 @@ StopResult render_until(Renderer &renderer, const StopRule &rule, unsigned seed,
     const unsigned first = renderer.next_sample();
     const unsigned end = first + std::min(result.spp, std::numeric_limits<unsigned>::max() - first);
     result.complete = renderer.render(end, [&](double done, double seconds) {
-        in_time = rule.seconds <= 0 || seconds < rule.seconds;
+        in_time = !out_of_time(rule, seconds);
         return in_time && (!on_launch || on_launch(done - first, seconds));
     }) || !in_time;
     return result;

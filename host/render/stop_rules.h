@@ -7,8 +7,9 @@ namespace opal {
 
 struct StopRule {
     double seconds = 0;        // limit of kernel time; 0: none
+    double wall_seconds = 0;   // limit of the time since the start of the process, by the wall clock; 0: none
     double relative_error = 0; // target: standard error of the image's mean luminance over that mean; 0: none
-    bool given() const { return seconds > 0 || relative_error > 0; }
+    bool given() const { return seconds > 0 || wall_seconds > 0 || relative_error > 0; }
 };
 
 struct StopResult {
@@ -20,7 +21,7 @@ struct StopResult {
 
 // Renders until the rule is met or each pixel has `max_spp` samples. The film must be empty: call restart(seed) before.
 //
-// A time limit stops at the first launch that ends after it. The decision does not depend on the samples' values.
+// A limit of time stops at the first launch that ends after it. The decision does not depend on the samples' values.
 //
 // An error target is met in two stages (Stein 1945, "A two-sample test for a linear hypothesis whose power is
 // independent of the variance"). A pilot grows until it holds a tenth of the samples that it finds necessary. Then the

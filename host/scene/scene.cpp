@@ -77,6 +77,11 @@ std::string camera_text(const Camera &camera) {
     return text;
 }
 
+bool has_light(const SceneDescription &scene) {
+    return !scene.lights.empty() ||
+           std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh &mesh) { return mesh.radiance; });
+}
+
 const Light *light_missed_by_bsdfs(const SceneDescription &scene) {
     for (const Light &light : scene.lights)
         if (!can_be_met(light.kind()))

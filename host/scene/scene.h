@@ -101,7 +101,11 @@ struct SceneDescription {
     SimpleLight simple_light;
     double visibility_length = 1; // integrator av: how far it looks
     unsigned spp = 1;
+    bool sample_count_given = false;
+    SourcePlace sampler_place; // of the <sampler>, else of the <scene>
 };
+
+bool has_light(const SceneDescription &scene); // an emitter of any kind
 
 // The first light that no BSDF sample can hit, or null.
 const Light *light_missed_by_bsdfs(const SceneDescription &scene);

@@ -37,7 +37,9 @@ std::vector<Material> hard_materials() {
             parse_material("phong 300",
                            R"(<bsdf type="phong"><color name="kd" value="0.5 0.4 0.3"/>
                             <color name="ks" value="0.5 0.4 0.9"/><float name="pd" value="0.1"/>
-                            <float name="n" value="300"/></bsdf>)")};
+                            <float name="n" value="300"/></bsdf>)"),
+            parse_material("microfacet 0", R"(<bsdf type="microfacet"><float name="alpha" value="0"/>
+                                            <color name="kd" value="0.3 0.15 0.075"/></bsdf>)")};
 }
 
 } // namespace

@@ -40,20 +40,56 @@ std::map<std::string, std::string> overrides_of(const std::string &text) {
     return overrides;
 }
 
-// Finds all combinations. Copies the scene without its shapes, so that copies are cheap.
-class Combinations {
+// What a scene has of the things that make an axis matter.
+class AxisNeeds {
 public:
-    explicit Combinations(const SceneDescription &scene) : scene_(scene), integrator_(integrator_of(scene.strategy)) {
+    explicit AxisNeeds(const SceneDescription &scene) {
         size_t emitters = scene.lights.size();
-        for (Mesh &mesh : scene_.meshes) {
+        for (const Mesh &mesh : scene.meshes) {
             const auto *triangles = std::get_if<TriangleMesh>(&mesh.shape);
             emitters += mesh.radiance.has_value();
             light_triangles_ = light_triangles_ || (mesh.radiance && triangles && triangles->triangles.size() > 1);
             diffuse_ = diffuse_ || mesh.bsdf.leads_to(BSDF_diffuse);
             refracts_ = refracts_ || (mesh.bsdf.traits() & OPAL_TRANSMITS);
-            mesh.shape = Parallelogram{};
         }
         many_emitters_ = emitters > 1;
+    }
+
+    bool refracts() const { return refracts_; }
+    bool matters(int axis, const Strategy &strategy) const {
+        return integrator_of(strategy).reads(axis) && (axes()[axis].needs & ~met(strategy)) == 0;
+    }
+
+private:
+    bool many_emitters_ = false, light_triangles_ = false, diffuse_ = false, refracts_ = false;
+
+    // What the scene and the strategy have: OPAL_NEEDS_*.
+    unsigned met(const Strategy &strategy) const {
+        const IntegratorTraits &integrator = integrator_of(strategy);
+        const bool diffuse_samples =
+            !integrator.has(OPAL_ASKS_BSDFS) ||
+            (diffuse_ && (integrator.has(OPAL_FOLLOWS_PATHS) || strategy[AXIS_lighting] != CHOICE_lighting_emitter));
+        const std::pair<unsigned, bool> needs[] = {
+            {OPAL_NEEDS_MIS, strategy[AXIS_lighting] == CHOICE_lighting_mis},
+            {OPAL_NEEDS_EMITTER_SAMPLES, samples_emitters(strategy)},
+            {OPAL_NEEDS_MANY_EMITTERS, many_emitters_},
+            {OPAL_NEEDS_MESH_LIGHTS, light_triangles_},
+            {OPAL_NEEDS_DIFFUSE_SAMPLES, diffuse_samples},
+            {OPAL_NEEDS_ROULETTE, strategy.max_depth > strategy.rr_depth},
+        };
+        unsigned all = 0;
+        for (const auto &[need, is_met] : needs)
+            all |= is_met ? need : 0;
+        return all;
+    }
+};
+
+// Finds all combinations. Copies the scene without its shapes, so that copies are cheap.
+class Combinations {
+public:
+    explicit Combinations(const SceneDescription &scene) : scene_(scene), needs_(scene) {
+        for (Mesh &mesh : scene_.meshes)
+            mesh.shape = Parallelogram{};
     }
 
     std::vector<Choices> all() {
@@ -63,34 +99,14 @@ public:
 
 private:
     SceneDescription scene_;
-    const IntegratorTraits &integrator_;
-    bool many_emitters_ = false, light_triangles_ = false, diffuse_ = false, refracts_ = false;
+    AxisNeeds needs_;
     std::vector<Choices> found_;
 
     // Axes are decided in order. Whether an axis matters depends on the choices of the axes before it.
     bool matters(int axis, const Choices &chosen) const {
         Strategy strategy = scene_.strategy;
         strategy.choices = chosen;
-        return integrator_.reads(axis) && (axes()[axis].needs & ~met_needs(strategy)) == 0;
-    }
-
-    // What the scene and the strategy have: OPAL_NEEDS_*.
-    unsigned met_needs(const Strategy &strategy) const {
-        const bool diffuse_samples =
-            !integrator_.has(OPAL_ASKS_BSDFS) ||
-            (diffuse_ && (integrator_.has(OPAL_FOLLOWS_PATHS) || strategy[AXIS_lighting] != CHOICE_lighting_emitter));
-        const std::pair<unsigned, bool> needs[] = {
-            {OPAL_NEEDS_MIS, strategy[AXIS_lighting] == CHOICE_lighting_mis},
-            {OPAL_NEEDS_EMITTER_SAMPLES, samples_emitters(strategy)},
-            {OPAL_NEEDS_MANY_EMITTERS, many_emitters_},
-            {OPAL_NEEDS_MESH_LIGHTS, light_triangles_},
-            {OPAL_NEEDS_DIFFUSE_SAMPLES, diffuse_samples},
-            {OPAL_NEEDS_ROULETTE, strategy.max_depth > strategy.rr_depth},
-        };
-        unsigned met = 0;
-        for (const auto &[need, is_met] : needs)
-            met |= is_met ? need : 0;
-        return met;
+        return needs_.matters(axis, strategy);
     }
 
     bool is_unbiased_and_ends(int axis, int choice) const {
@@ -102,7 +118,7 @@ private:
     }
 
     bool repeats_another(int axis, int choice) const {
-        return axis == AXIS_rr && choice == CHOICE_rr_throughput_eta && !refracts_;
+        return axis == AXIS_rr && choice == CHOICE_rr_throughput_eta && !needs_.refracts();
     }
 
     void extend(int axis, Choices chosen) {
@@ -206,6 +222,15 @@ std::vector<NamedStrategy> named_strategies(const SceneDescription &scene, const
         strategies.push_back(named);
     }
     return strategies;
+}
+
+std::vector<int> acting_axes(const SceneDescription &scene) {
+    const AxisNeeds needs(scene);
+    std::vector<int> acting;
+    for (int axis = 0; axis < AXIS_COUNT; axis++)
+        if (axis == AXIS_integrator || needs.matters(axis, scene.strategy))
+            acting.push_back(axis);
+    return acting;
 }
 
 std::vector<NamedStrategy> sensible_strategies(const SceneDescription &scene, size_t most) {

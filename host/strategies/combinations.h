@@ -15,6 +15,9 @@ struct NamedStrategy {
 NamedStrategy named_strategy(const SceneDescription &scene, const std::string &text);
 bool is_same(const Strategy &a, const Strategy &b);
 
+// The axes on which the scene's strategy depends: AXIS_integrator, and those whose choice changes something here.
+std::vector<int> acting_axes(const SceneDescription &scene);
+
 // The parts of 'a;b', without blanks around them; empty parts are left out.
 std::vector<std::string> split(const std::string &text, char separator);
 

@@ -1,12 +1,14 @@
 #include "sweep/analysis.h"
 
 #include "base/json.h"
+#include "stats/bootstrap.h"
 #include "stats/hypothesis.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace opal {
 
@@ -29,16 +31,23 @@ template <class Value> Sample sample_of(const SweepPoint &point, Value value) {
     return moments.sample();
 }
 
-double mse_seconds(const Replicate &r) { return r.mse * r.seconds; }
-double rel_mse_seconds(const Replicate &r) { return r.rel_mse * r.seconds; }
+constexpr size_t bootstrap_count = 1000;
+constexpr unsigned bootstrap_seed = 1;
 
-// The ratio of two points' means. Replicates are paired by rounds, because a disturbance of the machine slows a whole
-// round.
-template <class Value> stats::Interval ratio_of(const SweepPoint &a, const SweepPoint &b, Value value) {
-    std::vector<double> x = values_of(a, value), y = values_of(b, value);
-    const size_t rounds = std::min(x.size(), y.size());
-    x.resize(rounds), y.resize(rounds);
-    return stats::paired_ratio_interval(x, y, sweep_confidence);
+// Rounds of which every point of every strategy has a replicate.
+size_t whole_rounds(const SweepRecord &record) {
+    size_t rounds = SIZE_MAX;
+    for (const StrategyRecord &s : record.strategies)
+        for (const SweepPoint &p : s.points)
+            rounds = std::min(rounds, p.replicates.size());
+    return rounds == SIZE_MAX ? 0 : rounds;
+}
+
+template <class Value> double mean_of(const SweepPoint &point, const std::vector<size_t> &rounds, Value value) {
+    double sum = 0;
+    for (size_t round : rounds)
+        sum += value(point.replicates[round]);
+    return sum / double(rounds.size());
 }
 
 // The mean slope of log MSE against log spp. Each replicate gives one slope: replicates are independent of each other,
@@ -74,15 +83,30 @@ void test_bias(StrategySummary &s, const SweepPoint &largest, const ReferenceRec
 
 } // namespace
 
-stats::Interval StrategySummary::time_to(double rel_mse) const {
-    if (record->independent)
-        return {cost.estimate / rel_mse, cost.low / rel_mse, cost.high / rel_mse};
-    const PointSummary &last = points.back();
-    return {last.seconds * std::pow(last.rel_mse.estimate / rel_mse, -1 / slope.estimate)};
+double seconds_to(const StrategyRecord &strategy, double Replicate::*error, double level,
+                  const std::vector<size_t> &rounds) {
+    const SweepPoint &last = strategy.points.back();
+    if (strategy.independent)
+        return mean_of(last, rounds, [&](const Replicate &r) { return r.*error * r.seconds; }) / level;
+    std::vector<double> seconds, errors;
+    for (const SweepPoint &p : strategy.points) {
+        seconds.push_back(mean_of(p, rounds, [](const Replicate &r) { return r.seconds; }));
+        errors.push_back(mean_of(p, rounds, [&](const Replicate &r) { return r.*error; }));
+    }
+    const double slope = stats::fit_log_log(seconds, errors, {}, sweep_confidence).slope.estimate;
+    return slope < 0 ? seconds.back() * std::pow(errors.back() / level, -1 / slope) : NAN;
+}
+
+stats::Interval StrategySummary::ranking_time() const {
+    return times[size_t(std::find(std::begin(time_levels), std::end(time_levels), ranking_level) - time_levels)];
 }
 
 SweepSummary summarise(const SweepRecord &record) {
     SweepSummary summary;
+    const auto draws = stats::bootstrap_draws(whole_rounds(record), bootstrap_count, bootstrap_seed);
+    const auto interval_of = [&](const auto &statistic) {
+        return stats::bootstrap_interval(draws, sweep_confidence, statistic);
+    };
     for (const StrategyRecord &r : record.strategies) {
         if (r.points.empty())
             continue;
@@ -97,25 +121,38 @@ SweepSummary summarise(const SweepRecord &record) {
                                 stats::positive_mean_interval(mean(&Replicate::rel_mse), sweep_confidence)});
         }
         s.slope = slope_of(r);
-        s.cost = stats::positive_mean_interval(sample_of(r.points.back(), rel_mse_seconds), sweep_confidence);
+        for (size_t level = 0; level < std::size(time_levels); level++)
+            s.times[level] = interval_of(
+                [&](const auto &rounds) { return seconds_to(r, &Replicate::rel_mse, time_levels[level], rounds); });
         test_bias(s, r.points.back(), record.reference);
         summary.strategies.push_back(std::move(s));
     }
     std::vector<StrategySummary> &all = summary.strategies;
-    const auto cheaper = [](const StrategySummary &a, const StrategySummary &b) {
-        return a.cost.estimate < b.cost.estimate;
+    if (all.empty())
+        return summary;
+    const auto faster = [](const StrategySummary &a, const StrategySummary &b) {
+        const double x = a.ranking_time().estimate, y = b.ranking_time().estimate;
+        return x < y || (std::isfinite(x) && !std::isfinite(y));
     };
-    summary.best = size_t(std::min_element(all.begin(), all.end(), cheaper) - all.begin());
+    summary.best = size_t(std::min_element(all.begin(), all.end(), faster) - all.begin());
+    const StrategyRecord &best = *all[summary.best].record, &first = *all[0].record;
+    // The ratio of the seconds of a to those of b, to the same error.
+    const auto ratio = [&](const StrategyRecord &a, const StrategyRecord &b, double Replicate::*error, double level) {
+        if (&a == &b)
+            return stats::Interval{1, 1, 1};
+        return interval_of([&](const auto &rounds) {
+            return seconds_to(a, error, level, rounds) / seconds_to(b, error, level, rounds);
+        });
+    };
+    std::vector<size_t> all_rounds(first.points.back().replicates.size());
+    std::iota(all_rounds.begin(), all_rounds.end(), size_t(0));
+    const auto reached = [&](double Replicate::*error) {
+        return mean_of(first.points.back(), all_rounds, [&](const Replicate &r) { return r.*error; });
+    };
     for (StrategySummary &s : all) {
-        const SweepPoint &own = s.record->points.back(), &first = all[0].record->points.back(),
-                         &best = all[summary.best].record->points.back();
-        s.relative_time = ratio_of(own, best, rel_mse_seconds);
-        s.efficiency = ratio_of(first, own, mse_seconds);
-        s.rel_efficiency = ratio_of(first, own, rel_mse_seconds);
-        if (&s == &all[summary.best])
-            s.relative_time = {1, 1, 1};
-        if (&s == &all[0])
-            s.efficiency = s.rel_efficiency = {1, 1, 1};
+        s.relative_time = ratio(*s.record, best, &Replicate::rel_mse, ranking_level);
+        s.efficiency = ratio(first, *s.record, &Replicate::mse, reached(&Replicate::mse));
+        s.rel_efficiency = ratio(first, *s.record, &Replicate::rel_mse, reached(&Replicate::rel_mse));
     }
     return summary;
 }
@@ -126,7 +163,7 @@ nlohmann::json json_of(const SweepSummary &summary) {
     for (const StrategySummary &s : summary.strategies) {
         nlohmann::json j = object({{"name", s.record->name},
                                    {"slope", interval(s.slope)},
-                                   {"seconds_to_rel_mse_1_percent", interval(s.time_to(0.01))},
+                                   {"seconds_to_rel_mse_1_percent", interval(s.ranking_time())},
                                    {"time_relative_to_best", interval(s.relative_time)},
                                    {"efficiency_relative_to_first", interval(s.efficiency)},
                                    {"rel_mse_efficiency_relative_to_first", interval(s.rel_efficiency)},

@@ -44,7 +44,7 @@ std::string grid(const LogAxis &x, const LogAxis &y) {
                     svg +=
                         horizontal
                             ? svg_text(pixel, height - bottom + 18, "text-anchor='middle'", fmt::format("{:g}", value))
-                            : svg_text(left - 8, pixel + 4, "text-anchor='end'", fmt::format("{:g} %", 100 * value));
+                            : svg_text(left - 8, pixel + 4, "text-anchor='end'", fmt::format("{}e{}", digit, decade));
             }
     }
     svg += svg_text((left + width - right) / 2, height - 14, "text-anchor='middle'", "time, seconds (fewer is better)");
@@ -68,10 +68,10 @@ std::string curve(const StrategySummary &s, const std::string &color, const LogA
                  svg_line(px - 4, y(high), px + 4, y(high), "class='bar'");
         marks +=
             fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='4.5' fill='{}'><title>{}\n{} samples per pixel, {:.3g} "
-                        "s\nrelMSE {:.3g} % "
+                        "s\nrelMSE {:.3g} "
                         "[{:.3g}, {:.3g}]\nMSE {:.3g} [{:.3g}, {:.3g}]\n{} replicates</title></circle>\n",
-                        px, py, color, html_text(s.record->label), p.spp, p.seconds, 100 * p.rel_mse.estimate,
-                        100 * p.rel_mse.low, 100 * p.rel_mse.high, p.mse.estimate, p.mse.low, p.mse.high, p.replicates);
+                        px, py, color, html_text(s.record->label), p.spp, p.seconds, p.rel_mse.estimate, p.rel_mse.low,
+                        p.rel_mse.high, p.mse.estimate, p.mse.low, p.mse.high, p.replicates);
     }
     return fmt::format("<path d='{}' fill='none' stroke-width='2'/>\n", path) + marks;
 }

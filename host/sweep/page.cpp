@@ -54,8 +54,6 @@ for (const lens of lenses) {
 </body></html>
 )";
 
-constexpr double rel_mse_levels[] = {0.1, 0.01, 0.001}; // the columns "time to relMSE"
-
 bool bounded(const stats::Interval &i) { return std::isfinite(i.high) && i.low > 0; }
 
 std::string seconds_text(double s) {
@@ -74,21 +72,29 @@ std::string number_text(double x) {
     return fmt::format("{:.{}f}", x, x < 0.1 ? 4 : x < 1 ? 3 : x < 10 ? 2 : x < 100 ? 1 : 0);
 }
 
+// A relMSE: "1e-2", "3.4e-3"
+std::string error_text(double x) {
+    if (!(x > 0))
+        return fmt::format("{:g}", x);
+    const int exponent = int(std::floor(std::log10(x) + 1e-9));
+    return fmt::format("{:.2g}e{}", x / std::pow(10, exponent), exponent);
+}
+
 // The level of each strategy's test of bias, which gives a level of 1 % over all strategies (Bonferroni).
 double bias_level(const SweepSummary &summary) { return 0.01 / double(summary.strategies.size()); }
 
 std::string strategy_table(const SweepSummary &summary) {
     std::string html = "<table><tr><th>strategy</th>";
-    for (double level : rel_mse_levels)
-        html += fmt::format("<th>time to<br>relMSE {:g} %</th>", 100 * level);
-    html += "<th>time relative<br>to the best</th><th>efficiency<br>1 / (MSE &times; s)<br>relative to the "
+    for (double level : time_levels)
+        html += fmt::format("<th>time to<br>relMSE {}</th>", error_text(level));
+    html += "<th>time relative<br>to the best</th><th>speed to the<br>same MSE, relative<br>to the "
             "first</th><th>slope</th><th>bias</th><th>compile</th></tr>\n";
     for (size_t i = 0; i < summary.strategies.size(); i++) {
         const StrategySummary &s = summary.strategies[i];
         html += fmt::format("<tr><td><span class='dot' style='background:{}'></span>{}</td>", strategy_color(i),
                             html_text(s.record->label));
-        for (double level : rel_mse_levels)
-            html += interval_cell(s.time_to(level), seconds_text, bounded(s.time_to(level)));
+        for (const stats::Interval &time : s.times)
+            html += interval_cell(time, seconds_text, bounded(time));
         const bool best = i == summary.best, first = i == 0;
         html +=
             best ? "<td>the best</td>"
@@ -123,8 +129,8 @@ std::string equal_time_images(const SweepSummary &summary, const std::filesystem
         html += "<figure>" + embedded_png(folder / (image.file + ".png"), label) +
                 embedded_png(folder / (image.file + "_error.png"), label + ": error");
         html +=
-            fmt::format("<figcaption><b>{}</b>: {} samples per pixel in {:.3g} s, relMSE {} %</figcaption></figure>\n",
-                        label, image.spp, image.seconds, number_text(100 * image.rel_mse));
+            fmt::format("<figcaption><b>{}</b>: {} samples per pixel in {:.3g} s, relMSE {}</figcaption></figure>\n",
+                        label, image.spp, image.seconds, error_text(image.rel_mse));
     }
     return html + "</div>\n";
 }
@@ -143,14 +149,15 @@ std::string measurement_text(const SweepRecord &r) {
         "Each point is the mean of {} renders with seeds of their own, made in rounds: one of every strategy, then the "
         "next, "
         "so that what disturbed the machine disturbed all. An interval holds the true value with 95 % confidence: "
-        "Student's t, on the logarithm for errors, times and their ratios, by rounds for ratios.</p>\n",
+        "Student's t on the logarithm for errors; for times and their ratios the bootstrap over the rounds, with the "
+        "same draws for all strategies.</p>\n",
         html_text(r.scene), r.width, r.height, html_text(devices_of(r)), r.version,
         r.clock == "cpu" ? "CPU seconds of all cores over their number, what the kernels take on a machine of their own"
                          : "the device's own kernel times",
         r.replicates);
     html += "<p><b>relMSE</b> is the mean over pixels and channels of (image &minus; reference)&sup2; / "
             "(reference&sup2; + (1 % of the reference's mean)&sup2;): "
-            "1 % is an image whose typical error is a tenth of each pixel's value. ";
+            "at 1e-2 the typical error is a tenth of each pixel's value. ";
     html += ref.spp ? fmt::format("The reference has {} samples per pixel of <code>{}</code> ({:.3g} s), two halves of "
                                   "samples that no other image here "
                                   "uses; what its own noise adds to the errors is estimated from the halves' "
@@ -161,8 +168,8 @@ std::string measurement_text(const SweepRecord &r) {
                                                      : "it holds no variance, so that its own noise counts as error");
     html += "<p><b>slope</b>: of log MSE against log samples per pixel; &minus;1 for independent samples, which is why "
             "the time to an error "
-            "follows from the largest render. A strategy whose samples are not independent has times without "
-            "intervals, along its own slope. "
+            "follows from the largest render. A strategy whose samples are not independent has times along its own "
+            "slope. The time relative to the best is the ratio of the times to relMSE 1e-2. "
             "<b>bias</b>: of the mean luminance against the reference, where a test at level 1 % over all strategies "
             "sees one. <b>compile</b>: seconds until the "
             "kernel was ready when it was first built here; a driver's cache makes it shorter.</p>\n";
@@ -191,8 +198,7 @@ std::string verdict_list(const std::vector<std::string> &sentences) {
 
 std::vector<std::string> verdict(const SweepRecord &record, const SweepSummary &summary) {
     const StrategySummary &best = summary.strategies[summary.best];
-    constexpr double level = 0.01; // relMSE
-    const double seconds = best.time_to(level).estimate;
+    const double seconds = best.ranking_time().estimate;
     std::string where = std::filesystem::path(record.scene).filename().string();
     for (const DeviceRecord &d : record.devices)
         where += fmt::format("{}{}",
@@ -200,21 +206,23 @@ std::vector<std::string> verdict(const SweepRecord &record, const SweepSummary &
                              : &d == &record.devices[0] ? " on "
                                                         : " and ",
                              d.name);
-    std::vector<std::string> sentences = {
-        fmt::format("On {}, {} is the fastest: it {} relMSE 1 % in {}.", where, best.record->label,
-                    seconds > best.points.back().seconds ? "would reach" : "reaches", seconds_text(seconds))};
+    std::vector<std::string> sentences = {fmt::format("On {}, {} is the fastest: it {} relMSE {} in {}.", where,
+                                                      best.record->label,
+                                                      seconds > best.points.back().seconds ? "would reach" : "reaches",
+                                                      error_text(ranking_level), seconds_text(seconds))};
     std::vector<const StrategySummary *> others;
     for (const StrategySummary &s : summary.strategies)
         if (&s != &best)
             others.push_back(&s);
-    std::sort(others.begin(), others.end(), [](auto a, auto b) { return a->cost.estimate < b->cost.estimate; });
+    std::sort(others.begin(), others.end(),
+              [](auto a, auto b) { return a->relative_time.estimate < b->relative_time.estimate; });
     for (const StrategySummary *s : others)
         sentences.push_back(fmt::format(
             fmt::runtime(
                 bounded(s->relative_time) && !s->relative_time.contains(1)
                     ? "{} needs {}, {} times longer (95 % interval {} to {})."
                     : "{} needs {}; that is not significantly different ({} times longer, 95 % interval {} to {})."),
-            s->record->label, seconds_text(s->time_to(level).estimate), number_text(s->relative_time.estimate),
+            s->record->label, seconds_text(s->ranking_time().estimate), number_text(s->relative_time.estimate),
             number_text(s->relative_time.low), number_text(s->relative_time.high)));
     for (const StrategySummary &s : summary.strategies)
         if (s.bias_p < bias_level(summary))

@@ -55,7 +55,7 @@ def furnace():
 A furnace: a closed sphere whose wall has albedo a = 0.6 everywhere and emits Le = 0.2 everywhere. Radiance is then the
 same at every point and in every direction, so the rendering equation L = Le + a L gives L = Le / (1 - a) = 0.5: every
 pixel of every full path tracer has this mean. The mesh is wound outwards and its vn point inwards; the vn count.""",
-                  ('<integrator type="path_mis">',), 64)
+                  ('<integrator type="path_mis">',), 64, filter="gaussian")
     scene.camera((0.2, 0.1, -0.3), (0, 0, 1), 70, 128, 128)
     scene.mesh("furnace", diffuse(0.6, 0.6, 0.6), radiance=(0.2, 0.2, 0.2))
     return scene

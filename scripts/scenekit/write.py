@@ -73,8 +73,8 @@ def path_tracer(nee=True, mis=True):
 class Scene:
     """A scene in the order it is written: what it is for, how it is rendered, the camera, then its meshes."""
 
-    def __init__(self, name, purpose, integrator=None, spp=64):
-        self.name, self.purpose, self.meshes = name, purpose, []
+    def __init__(self, name, purpose, integrator=None, spp=64, filter="box"):
+        self.name, self.purpose, self.filter, self.meshes = name, purpose, filter, []
         self.head = [integrator or path_tracer(),
                      ('<sampler type="independent">', f'<integer name="sampleCount" value="{spp}"/>')]
 
@@ -83,7 +83,8 @@ class Scene:
                           f'<integer name="height" value="{height}"/>', real("fov", fov),
                           *([real("farClip", far)] if far else []),
                           ('<transform name="toWorld">',
-                           f'<lookat origin="{triple(origin)}" target="{triple(target)}" up="0 1 0"/>')))
+                           f'<lookat origin="{triple(origin)}" target="{triple(target)}" up="0 1 0"/>'),
+                          f'<rfilter type="{self.filter}"/>'))
 
     def mesh(self, obj, material, *transform, radiance=None):
         """An OBJ of scenes/meshes, moved by the transforms in their order."""

@@ -116,9 +116,9 @@ TEST_CASE("files are told by their bytes, whatever their names", "[file_kind]") 
 
 TEST_CASE_METHOD(KindFixture, "the error says what the file is and how to convert it", "[file_kind]") {
     CHECK_THAT(error_in("ply\nformat ascii 1.0\n"),
-               Catch::StartsWith("is a PLY mesh, not an OBJ file; convert it: assimp export FILE NEW.obj"));
+               Catch::StartsWith("is a PLY mesh, not an OBJ file; convert it: assimp export " + file() + " NEW.obj"));
     CHECK(error_in("\x1f\x8b\x08"s, FileKind::scene) ==
-          "is compressed by gzip, not a scene; unpack it: gzip -dc FILE > NEW");
+          "is compressed by gzip, not a scene; unpack it: gzip -dc " + file() + " > NEW");
     CHECK_THAT(error_in(obj_text, FileKind::scene), Catch::StartsWith("is a Wavefront OBJ mesh, not a scene; "));
     CHECK_THAT(error_in("<scene/>", FileKind::obj), Catch::StartsWith("is a scene, not an OBJ file; "));
     CHECK(error_in(obj_text, FileKind::obj).empty());

@@ -249,6 +249,9 @@ TEST_CASE_METHOD(LoadFixture, "BSDFs with their parameters", "[load]") {
     REQUIRE(rough.is<bsdf_microfacet_record>());
     CHECK(rough.as<bsdf_microfacet_record>().alpha.value == 0.1f);
     CHECK(rough.as<bsdf_microfacet_record>().kd.value[2] == 0.15f);
+    CHECK(bsdf("<bsdf type='microfacet'><float name='alpha' value='0'/></bsdf>")
+              .as<bsdf_microfacet_record>()
+              .alpha.value == 0);
     const auto phong = bsdf("<bsdf type='phong'><float name='n' value='1e8'/></bsdf>").as<bsdf_phong_record>();
     CHECK(phong.n.value == 1e8f);
     CHECK(phong.pd.value == 0.5f);
@@ -260,7 +263,7 @@ TEST_CASE_METHOD(LoadFixture, "BSDF values that make no sense fail at their plac
           ":4:1: property 'albedo': must be 0 or more: reflectance");
     CHECK_THAT(bsdf_error("microfacet", "<color name='kd' value='1.5 0 0'/>"),
                Catch::StartsWith(":4:1: property 'kd': must be 0 to 1"));
-    CHECK_THAT(bsdf_error("microfacet", "<float name='alpha' value='0'/>"), Catch::StartsWith(":4:1: "));
+    CHECK_THAT(bsdf_error("microfacet", "<float name='alpha' value='-1e-9'/>"), Catch::StartsWith(":4:1: "));
     CHECK_THAT(bsdf_error("dielectric", "<float name='intIOR' value='0'/>"), Catch::StartsWith(":4:1: "));
     CHECK_THAT(bsdf_error("phong", "<float name='pd' value='1.5'/>"), Catch::StartsWith(":4:1: "));
     CHECK_THAT(bsdf_error("phong", "<float name='n' value='-1'/>"), Catch::StartsWith(":4:1: "));

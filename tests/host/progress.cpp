@@ -5,7 +5,9 @@
 #include <catch2/catch.hpp>
 
 #include <csignal>
+#include <cstdio>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 
 using namespace opal;
@@ -25,6 +27,30 @@ TEST_CASE("A progress line tells share, speed and time left", "[progress]") {
     CHECK(progress_line("render", "samples", 5, 10, 1, true) ==
           "render  50 % [###############               ]  5 samples/s  1.0 s left");
     CHECK(progress_line("render", "samples", 0, 10, 0, false) == "render   0 %");
+}
+
+TEST_CASE("Running seconds are told from the first second on, and not before", "[progress]") {
+    // Redirected, so that each line stays.
+    const auto told_in = [](double seconds) {
+        std::fflush(stderr);
+        const int before = dup(STDERR_FILENO);
+        std::FILE *file = std::tmpfile();
+        dup2(fileno(file), STDERR_FILENO);
+        {
+            const RunningSeconds running("compile");
+            std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+        }
+        std::fflush(stderr);
+        dup2(before, STDERR_FILENO);
+        close(before);
+        std::string text(200, '\0');
+        std::rewind(file);
+        text.resize(std::fread(text.data(), 1, text.size(), file));
+        std::fclose(file);
+        return text;
+    };
+    CHECK(told_in(0.2).empty());
+    CHECK(told_in(1.3) == "compile 1 s\n");
 }
 
 TEST_CASE("The first interrupt sets the flag, the second ends the process", "[progress]") {

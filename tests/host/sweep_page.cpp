@@ -47,7 +47,7 @@ TEST_CASE("Slope, cost, ratios and bias of replicates whose truth is known", "[s
     const StrategySummary &slow = summary.strategies[0], &quick = summary.strategies[1];
     CHECK(slow.slope.estimate == Approx(-1).margin(0.02));
     CHECK(slow.slope.high - slow.slope.low < 0.1);
-    CHECK(slow.time_to(0.01).estimate == Approx(1600).epsilon(0.05));
+    CHECK(slow.ranking_time().estimate == Approx(1600).epsilon(0.05));
     CHECK(slow.relative_time.estimate == Approx(4).epsilon(0.05));
     CHECK(slow.relative_time.low < slow.relative_time.estimate);
     CHECK(quick.efficiency.estimate == Approx(4).epsilon(0.05));
@@ -57,6 +57,30 @@ TEST_CASE("Slope, cost, ratios and bias of replicates whose truth is known", "[s
     CHECK(summarise(record).strategies[1].bias_p < 1e-6);
     CHECK_THAT(verdict(record, summarise(record)).back(),
                Catch::StartsWith("quick is biased: its mean luminance is +2"));
+}
+
+TEST_CASE("Seconds, ratio, ranking and verdict are one definition, where slopes differ", "[sweep_page]") {
+    // At the most samples `even` has a tenth of the cost of `steep`. The error of `steep` falls as spp^-2, so that it
+    // is first at relMSE 1e-2.
+    SweepRecord record = record_of();
+    record.strategies = {strategy_of("even", 8, 1), strategy_of("steep", 8, 2)};
+    for (SweepPoint &p : record.strategies[1].points)
+        for (Replicate &r : p.replicates)
+            r.rel_mse *= 640. / p.spp, r.mse *= 640. / p.spp;
+    record.strategies[1].independent = false;
+    const SweepSummary summary = summarise(record);
+    const StrategySummary &even = summary.strategies[0], &steep = summary.strategies[1];
+    CHECK(summary.best == 1);
+    CHECK(even.ranking_time().estimate == Approx(1600).epsilon(0.05));
+    CHECK(steep.ranking_time().estimate == Approx(64 * std::sqrt(2.5 / 0.01)).epsilon(0.05)); // 1012
+    CHECK(even.relative_time.estimate == even.ranking_time().estimate / steep.ranking_time().estimate);
+    CHECK(steep.ranking_time().low < steep.ranking_time().estimate);
+    CHECK(steep.ranking_time().high < INFINITY);
+    CHECK(steep.relative_time.estimate == 1);
+    CHECK(even.relative_time.low > 1);
+    const std::vector<std::string> sentences = verdict(record, summary);
+    CHECK_THAT(sentences[0], Catch::Contains("steep is the fastest"));
+    CHECK_THAT(sentences[1], Catch::StartsWith("even needs 1") && Catch::Contains("1.60 times longer"));
 }
 
 TEST_CASE("The page is one file whose text is escaped", "[sweep_page]") {

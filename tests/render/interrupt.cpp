@@ -63,7 +63,7 @@ TEST_CASE("An interrupted first pass tells of the pixels without a sample, and c
         const Outcome outcome = interrupted_after(
             2, folder, render + " --width 1024 --height 1024 --spp 1000 -o " + exr + " --json " + json + rule);
         INFO(outcome.err);
-        REQUIRE(outcome.exit_code == exit_interrupted);
+        REQUIRE(outcome.exit_code == 130);
         CHECK_THAT(outcome.err, Catch::Contains(" of 1048576 pixels (") && Catch::Contains(" have no sample"));
         CHECK_THAT(outcome.err, !Catch::Contains("+-") && !Catch::Contains("confidence"));
         const nlohmann::json report = nlohmann::json::parse(read_text(json));
@@ -81,6 +81,7 @@ TEST_CASE("An interrupted first pass tells of the pixels without a sample, and c
 }
 
 TEST_CASE("An interrupted render leaves an image of the samples it finished", "[interrupt]") {
+    const auto [signal, code] = GENERATE(std::pair("INT", 130), std::pair("TERM", 143), std::pair("HUP", 129));
     const ScratchFolder folder;
     const std::string exr = folder / "out.exr", said = folder / "said.txt";
     // The shell interrupts Opal once its progress shows that it renders, and kills it should it not end. A shell's
@@ -92,13 +93,16 @@ TEST_CASE("An interrupted render leaves an image of the samples it finished", "[
                                       "for i in $(seq 600); do grep -q '^render' " +
                                       said +
                                       " && break; sleep 0.1; done\n"
-                                      "pkill -INT -P $job; wait $job; exit $?");
+                                      "pkill -" +
+                                      std::string(signal) + " -P $job; wait $job; exit $?");
     INFO(read_text(said));
-    CHECK(outcome.exit_code == exit_interrupted);
+    CHECK(outcome.exit_code == code);
     CHECK_THAT(read_text(said),
                Catch::Contains("interrupted: the image holds") && Catch::Contains("of 100000000 samples a pixel"));
     const Image image = read_exr(exr);
     CHECK(image.width == 64);
+    CHECK(image.metadata.at("opal.interrupted") == "true");
+    CHECK(image.metadata.at("opal.asked_spp") == "100000000");
     CHECK(image.metadata.at("opal.invalid_samples") == "0");
     const double spp = std::stod(image.metadata.at("opal.spp"));
     CHECK(spp > 1);

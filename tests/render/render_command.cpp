@@ -73,6 +73,31 @@ TEST_CASE("A render leaves EXR and PNG in the current folder, named after the sc
     CHECK(stats["invalid_samples"] == 0);
 }
 
+TEST_CASE("A black image is told where the scene has lights, and what lets nothing be seen with its line",
+          "[render_command]") {
+    const SceneFolder folder;
+    const auto render = [&](const std::string &from, const std::string &to, const std::string &arguments) {
+        std::string text = scene_text;
+        text.replace(text.find(from), from.size(), to);
+        folder.scratch.write("plain.xml", text);
+        const Outcome outcome = run_shell(folder.render("--no-png " + arguments));
+        CHECK(outcome.exit_code == 0);
+        return outcome.err;
+    };
+    const std::string black = "plain.xml: the image is black, although the scene has lights: none of 1152 samples";
+    const std::string beside = render("5 -5 3", "50 -5 3", "--quiet");
+    CHECK_THAT(beside, Catch::Contains(black) && !Catch::Contains("nearClip"));
+    const std::string behind = render("5 -5 3", "5 -5 -3", "--quiet");
+    CHECK_THAT(behind, Catch::Contains(black) && Catch::Contains("plain.xml:4:3: the camera sees no mesh") &&
+                           Catch::Contains("plain.xml:5:3: the only light faces away"));
+    CHECK(render("1 2 3", "0 0 1", "--quiet").empty());
+    const std::string count = R"(<integer name="sampleCount" value="4"/>)",
+                      note = "plain.xml:3:3: no sampleCount: 1 sample";
+    CHECK_THAT(render(count, "", ""), Catch::Contains(note));
+    CHECK_THAT(render(count, "", "--spp 2"), !Catch::Contains(note));
+    CHECK_THAT(render(count, count, ""), !Catch::Contains(note));
+}
+
 TEST_CASE("Size, samples and output are the command line's where given", "[render_command]") {
     const SceneFolder folder;
     REQUIRE(run_shell(folder.render("-o out.exr --no-png --width 8 --spp 1 --lanes 1")).exit_code == 0);

@@ -1,6 +1,7 @@
 // `render --time` and `--target-error`: they stop where they say, stay unbiased, and state intervals that cover the
 // truth.
 #include "render/stop_rules.h"
+#include "base/command_line.h"
 
 #include "base/units.h"
 #include "image/image.h"
@@ -85,6 +86,35 @@ TEST_CASE("--time ends after that much kernel time, and stops no render that end
     CHECK(s.samples < 64ull << 30);
     CHECK(r.renderer.kernel_seconds() >= 0.3);
     CHECK(r.renderer.kernel_seconds() < 3); // a launch is about 0.1 s
+}
+
+TEST_CASE("--time-limit counts from the start of the process, and stops no render that ends before", "[stop_rules]") {
+    Rendering r;
+    CHECK(r.until({.wall_seconds = seconds_since_start() + 1000}, test_seed(4), 16).samples == 64 * 16);
+    StopResult stopped;
+    const double start = seconds_since_start();
+    const FilmStatistics s = r.until({.wall_seconds = start + 0.3}, test_seed(5), 1u << 30, &stopped);
+    CHECK(stopped.complete);
+    CHECK(s.samples < 64ull << 30);
+    CHECK(seconds_since_start() >= start + 0.3);
+    CHECK(seconds_since_start() < start + 5);
+}
+
+TEST_CASE("A render that its rule ends speaks of no error", "[stop_rules]") {
+    const ScratchFolder folder;
+    for (const std::string rule : {"--time 0.1s", "--time-limit 1s", "--target-error 5%"}) {
+        INFO(rule);
+        const std::string json = folder / "a.json";
+        const Outcome outcome = run_shell(OPAL_BINARY " " OPAL_SOURCE_DIR "/scenes/furnace.xml --width 32 --no-png " +
+                                          rule + " -o /dev/null --json " + json);
+        INFO(outcome.err);
+        REQUIRE(outcome.exit_code == 0);
+        CHECK_THAT(outcome.err, Catch::Contains("\nstop    after ") && !Catch::Contains("\nerror"));
+        const nlohmann::json report = nlohmann::json::parse(read_text(json));
+        CHECK("--" + report["stop"]["rule"].get<std::string>() == rule.substr(0, rule.find(' ')));
+        CHECK(report["stop"]["wall_seconds"] >= report["stop"]["kernel_seconds"]);
+        CHECK(report["interrupted"] == false);
+    }
 }
 
 // Of many launches a pass, of which --time lets one end.

@@ -146,6 +146,9 @@ Findings check_albedos(const Sources &sources, unsigned seed) {
     for (const auto &[degrees, albedo] :
          {std::pair{0.0, 0.207084}, {45.0, 0.215892}, {60.0, 0.247775}, {80.0, 0.430824}, {85.0, 0.519005}})
         judge("microfacet_0.1", degrees, albedo);
+    for (double degrees : {0.0, 60.0, 85.0}) // luminance of kd + ks F
+        judge("microfacet_0", degrees,
+              luminance(Color{0.1, 0.2, 0.15}) + 0.8 * fresnel_reflectance(direction(degrees).z, 1.000277, 1.5));
     judge("diffuse", 50, 0.6f);
     judge("diffuse_uniform", 50, 0.6f);
     return findings;

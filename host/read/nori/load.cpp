@@ -7,8 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace opal {
 
 namespace {
@@ -23,29 +21,30 @@ void choose_filter(SceneDescription &scene) {
     filter.radius = is_box ? 0.5 : 2;
 }
 
-// What follows from a dialect.
-const char *meaning_of(Dialect dialect) {
-    switch (dialect) {
-    case Dialect::course:
-        return "a box filter by default";
-    case Dialect::eth:
-        return "the camera's +x points to the right of the image";
-    default:
-        return "the camera's +x points to the left of the image";
-    }
+// What follows from a dialect for this scene; empty if nothing does.
+std::string consequence_of(const SceneDescription &scene) {
+    if (scene.dialect == Dialect::course)
+        return scene.camera.filter.given ? "" : "without <rfilter> the filter is a box";
+    return fmt::format("the camera's +x points to the {} of the image",
+                       scene.dialect == Dialect::eth ? "right" : "left");
 }
 
-Dialect dialect_of(const XmlNode &scene, const ParseContext &context) {
-    if (context.dialect)
-        return *context.dialect;
-    const DialectChoice choice = dialect_of(scene);
-    const std::string dialect = name_of(choice.dialect), meaning = meaning_of(choice.dialect);
+DialectChoice choose_dialect(const XmlNode &scene, const ParseContext &context) {
+    return context.dialect ? DialectChoice{*context.dialect, "", ""} : dialect_of(scene);
+}
+
+// Says by which name the dialect was told, where something follows from it.
+void tell_dialect(const SceneDescription &scene, const DialectChoice &choice, const SourcePlace &place) {
+    const std::string dialect = name_of(choice.dialect), consequence = consequence_of(scene);
     if (!choice.against.empty())
-        warn(fmt::format("{}: names of several dialects: {}, and {}; it is read as {}: {}; --dialect decides otherwise",
-                         scene.place().text(), choice.reason, choice.against, dialect, meaning));
-    else if (!choice.reason.empty())
-        info(fmt::format("dialect {}, by {}: {}; --dialect decides otherwise", dialect, choice.reason, meaning));
-    return choice.dialect;
+        warn(fmt::format("{}: names of several dialects: {}, and {}; it is read as {}{}{}; --dialect decides otherwise",
+                         place.text(), choice.reason, choice.against, dialect, consequence.empty() ? "" : ": ",
+                         consequence));
+    else if (!choice.reason.empty() && !consequence.empty())
+        info(fmt::format("dialect {}, by {}: {}; --dialect decides otherwise", dialect, choice.reason, consequence));
+    else if (!scene.camera.filter.given)
+        info(fmt::format("no <rfilter>: {}, as dialect {} means it",
+                         scene.camera.filter.kind == FILTER_box ? "box" : "gaussian", dialect));
 }
 
 // Opal's camera has +x to the left of the image.
@@ -54,15 +53,10 @@ void turn_camera(SceneDescription &scene) {
         scene.camera.to_world = scene.camera.to_world * Transform::scale({-1, 1, 1});
 }
 
-bool has_light(const SceneDescription &scene) {
-    return !integrator_of(scene.strategy).has(OPAL_ASKS_LIGHTS) || !scene.lights.empty() ||
-           std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh &mesh) { return mesh.radiance; });
-}
-
 void warn_if_black(const SceneDescription &scene, const XmlNode &node) {
     if (scene.meshes.empty())
         warn(node.place().text() + ": the scene has no <mesh>; it renders black");
-    else if (!has_light(scene))
+    else if (integrator_of(scene.strategy).has(OPAL_ASKS_LIGHTS) && !has_light(scene))
         warn(node.place().text() + ": the scene has no <emitter>; it renders black");
 }
 
@@ -79,7 +73,9 @@ SceneDescription parse_scene(const XmlNode &node, const ParseContext &context) {
     Properties properties(node, context, false);
     SceneDescription scene;
     scene.file = node.place().file;
-    scene.dialect = dialect_of(node, context);
+    const DialectChoice dialect = choose_dialect(node, context);
+    scene.dialect = dialect.dialect;
+    scene.sampler_place = node.place();
     apply_integrator(scene.strategy, find_integrator(scene.integrator_type));
     const auto camera = properties.child("camera");
     if (!camera)
@@ -100,8 +96,10 @@ SceneDescription parse_scene(const XmlNode &node, const ParseContext &context) {
     properties.finish();
     choose_filter(scene);
     turn_camera(scene);
-    if (!context.mistakes || context.mistakes->count() == 0)
-        warn_if_black(scene, node);
+    if (context.mistakes && context.mistakes->count() > 0)
+        return scene;
+    tell_dialect(scene, dialect, node.place());
+    warn_if_black(scene, node);
     return scene;
 }
 
@@ -115,9 +113,6 @@ SceneDescription load_scene(const std::filesystem::path &file, const LoadOptions
     Mistakes mistakes;
     SceneDescription scene = parse_scene(root, context_for(file, options, mistakes));
     mistakes.throw_all();
-    if (!scene.camera.filter.given)
-        info(fmt::format("no <rfilter>: {}, as dialect {} means it",
-                         scene.camera.filter.kind == FILTER_box ? "box" : "gaussian", name_of(scene.dialect)));
     return scene;
 }
 

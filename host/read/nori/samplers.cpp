@@ -8,9 +8,12 @@ void parse_sampler(const XmlNode &node, const ParseContext &context, SceneDescri
     Properties properties(node, context);
     if (const Choice *type = properties.row_of_type(types, types.front().name + " stands in for it"))
         scene.strategy[AXIS_sampler] = static_cast<int>(type - types.data());
-    int count = properties.integer("sampleCount").value_or(1);
+    const std::optional<int> given = properties.integer("sampleCount");
+    const int count = given.value_or(1);
     properties.check(count >= 1, "sampleCount", "must be at least 1 sample per pixel");
     scene.spp = static_cast<unsigned>(count);
+    scene.sample_count_given = given.has_value();
+    scene.sampler_place = node.place();
     properties.finish();
 }
 

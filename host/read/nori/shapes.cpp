@@ -1,5 +1,6 @@
 // Parsers of meshes: triangles of an OBJ file, and parallelograms.
 #include "base/error.h"
+#include "base/log.h"
 #include "read/nori/parsers.h"
 #include "read/obj_materials.h"
 
@@ -60,6 +61,13 @@ std::vector<Mesh> parse_parallelogram(Properties &properties, MeshStart start) {
     return {std::move(start.mesh)};
 }
 
+// Whether the transform turns the normals round: those of faces, which follow from the order of the corners. Normals of
+// corners stay on their side.
+bool is_turned_by(const Transform &to_world, const Shape &shape) {
+    const auto *mesh = std::get_if<TriangleMesh>(&shape);
+    return to_world.determinant() < 0 && (!mesh || mesh->normals.empty());
+}
+
 struct ShapeType {
     std::string name;
     std::vector<Mesh> (*parse)(Properties &, MeshStart);
@@ -78,7 +86,7 @@ std::vector<Mesh> parse_meshes(const XmlNode &node, const ParseContext &context)
     Mesh &mesh = start.mesh;
     mesh.place = node.place();
     mesh.name = properties.string("name").value_or("");
-    start.to_world = properties.transform("toWorld").value_or(Transform());
+    const Transform to_world = start.to_world = properties.transform("toWorld").value_or(Transform());
     if (auto bsdf = properties.child("bsdf")) {
         context.attempt(*bsdf, [&] { mesh.bsdf = parse_bsdf(*bsdf, context); });
         start.own.own_bsdf = true;
@@ -92,6 +100,11 @@ std::vector<Mesh> parse_meshes(const XmlNode &node, const ParseContext &context)
     std::vector<Mesh> meshes;
     context.attempt(node, [&] { meshes = type->parse(properties, std::move(start)); });
     properties.finish();
+    const auto is_turned = [&](const Mesh &made) {
+        return made.radiance && !made.emits_on_both_sides && is_turned_by(to_world, made.shape);
+    };
+    if (std::any_of(meshes.begin(), meshes.end(), is_turned))
+        warn(node.place().text() + ": toWorld mirrors this light, so that it shines on the other side");
     return meshes;
 }
 
