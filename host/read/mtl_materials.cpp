@@ -169,6 +169,7 @@ PrincipledMaterial principled_of(const MtlMaterial &written) {
         add_blender_layers(of, material);
     else
         add_other_layers(of, material);
+    material.roughness = std::min(material.roughness, 1.0);
     return material;
 }
 

@@ -212,6 +212,8 @@ TEST_CASE_METHOD(MtlFixture, "numbers beyond what a BSDF can hold become the nea
     const Bsdf sharp = surface_of(one("Kd 0.5\nKs 0.3\nNs 1e30\n")).bsdf.children.at(0);
     CHECK(sharp.as<bsdf_phong_record>().n.value == 1e5f);
     CHECK(principled_of(one("Ni 0\n")).ior == 1.5);
+    CHECK(principled_of(one("Pr 1e30\n")).roughness == 1);
+    CHECK(blender("Pr 2\n").roughness == 1);
 }
 
 TEST_CASE_METHOD(MtlFixture, "glass is smooth unless a statement says how rough it is", "[mtl]") {
