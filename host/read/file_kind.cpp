@@ -119,10 +119,21 @@ std::string_view xml_root(std::string_view text) {
     }
 }
 
-// Nori's forks have some of Mitsuba's tags, and some scenes of Nori a version: both together are Mitsuba's.
+// A version of three numbers in the tag: version="3.0.0".
+bool has_long_version(std::string_view tag) {
+    const size_t at = tag.find("version");
+    if (at == tag.npos)
+        return false;
+    const size_t begin = tag.find_first_of("\"'", at);
+    const std::string_view value =
+        begin == tag.npos ? "" : tag.substr(begin + 1, tag.find(tag[begin], begin + 1) - begin - 1);
+    return std::count(value.begin(), value.end(), '.') == 2;
+}
+
+// Nori's forks have some of Mitsuba's tags, and some scenes of Nori a version: both together, with a version as
+// Mitsuba writes it, are Mitsuba's.
 bool is_mitsuba(std::string_view root) {
-    const std::string_view tag = root.substr(0, root.find('>'));
-    if (!contains(tag, "version"))
+    if (!has_long_version(root.substr(0, root.find('>'))))
         return false;
     for (std::string_view own : {"<shape", "<film", "<sensor", "<default", "<include", "<rgb", "<spectrum", "to_world"})
         if (contains(root, own))

@@ -237,6 +237,7 @@ private:
     // Options may stand before and behind the name, which is all the rest: it may hold blanks.
     void read_texture(const std::string &statement, std::string_view rest) {
         MtlTexture texture;
+        texture.statement = reading_;
         texture.place = place_of(reading_);
         std::vector<std::string_view> words = split_words(rest);
         const char *name_begin = nullptr, *name_end = nullptr;

@@ -193,7 +193,7 @@ SurfaceOfMaterial surface_of(const MtlMaterial &written) {
         surface.lacking.push_back("anisotropy");
     for (const auto &[statement, texture] : written.textures)
         surface.lacking.push_back(
-            fmt::format("{} {}{}", statement, texture.file,
+            fmt::format("{} {}{}", texture.statement, texture.file,
                         statement == "map_ke" && written.by_blender ? ", whose strength Blender has not written" : ""));
     return surface;
 }

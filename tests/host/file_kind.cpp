@@ -93,6 +93,8 @@ TEST_CASE("files are told by their bytes, whatever their names", "[file_kind]") 
          FileKind::mitsuba_scene},
         {"<scene version='3.5.0'><sensor type='perspective'/></scene>", "a scene of Mitsuba", FileKind::mitsuba_scene},
         {"<scene version='1.0'><mesh type='obj'/></scene>", "a scene", FileKind::scene},
+        {"<scene version=\"1\"><shape type='obj'/></scene>", "a scene", FileKind::scene},
+        {"<scene version='3.0.0'><mesh type='obj'/></scene>", "a scene", FileKind::scene},
         {"\xef\xbb\xbf<scene><shape type='sphere'/></scene>", "a scene", FileKind::scene},
         {"<test type='ttest'/>", "a scene", FileKind::scene},
         {"# Blender MTL\n\nnewmtl red\n", "a material library (MTL)", FileKind::mtl},

@@ -202,7 +202,7 @@ TEST_CASE_METHOD(MtlFixture, "materials become the BSDFs that Opal has", "[mtl]"
     CHECK(blender_surface("d 0\n").is_invisible);
     CHECK(blender_surface("d 0.5\n").lacking.size() == 1);
     CHECK(blender_surface("map_Kd t.png\nmap_Bump n.png\n").lacking ==
-          std::vector<std::string>{"map_bump n.png", "map_kd t.png"});
+          std::vector<std::string>{"map_Bump n.png", "map_Kd t.png"});
 }
 
 TEST_CASE_METHOD(MtlFixture, "numbers beyond what a BSDF can hold become the nearest that it can", "[mtl]") {
