@@ -160,7 +160,8 @@ StressResult run_stress(const StressRow &row, const Device &device, const Stress
         s.points.push_back(
             measure(row, value, device, settings, row.truth ? std::optional(row.truth(value)) : invariant));
         s.kept = s.kept && (!promised(row, value) || s.points.back().fault.empty());
-        on_value();
+        if (on_value)
+            on_value();
     }
     find_working_range(s);
     return s;

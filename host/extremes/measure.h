@@ -38,7 +38,7 @@ std::vector<double> values_of(const StressRow &row, size_t stride);
 
 // Runs the row on `device` with values_of(row, stride); calls on_value after each. Throws the renderer's Error.
 StressResult run_stress(const StressRow &row, const Device &device, const StressSettings &settings, size_t stride,
-                        const std::function<void()> &on_value);
+                        const std::function<void()> &on_value = {});
 
 // The working range and the faults next to it: "correct from 1e-05 to 1e+06; at 1e-06 energy off by 0.0031".
 std::string breaking_point(const StressResult &result);
