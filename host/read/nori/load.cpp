@@ -73,8 +73,7 @@ SceneDescription parse_scene(const XmlNode &node, const ParseContext &context) {
     Properties properties(node, context, false);
     SceneDescription scene;
     scene.file = node.place().file;
-    const DialectChoice dialect = choose_dialect(node, context);
-    scene.dialect = dialect.dialect;
+    scene.dialect = choose_dialect(node, context).dialect;
     scene.place = scene.sampler_place = node.place();
     apply_integrator(scene.strategy, find_integrator(scene.integrator_type));
     const auto camera = properties.child("camera");
@@ -96,10 +95,8 @@ SceneDescription parse_scene(const XmlNode &node, const ParseContext &context) {
     properties.finish();
     choose_filter(scene);
     turn_camera(scene);
-    if (context.mistakes && context.mistakes->count() > 0)
-        return scene;
-    tell_dialect(scene, dialect, node.place());
-    warn_if_black(scene, node);
+    if (!context.mistakes || context.mistakes->count() == 0)
+        warn_if_black(scene, node);
     return scene;
 }
 
@@ -111,8 +108,10 @@ SceneDescription load_scene(const std::filesystem::path &file, const LoadOptions
     if (root.tag() != "scene")
         root.fail(unknown_name("root", root.tag(), {"scene", "test"}));
     Mistakes mistakes;
-    SceneDescription scene = parse_scene(root, context_for(file, options, mistakes));
+    const ParseContext context = context_for(file, options, mistakes);
+    SceneDescription scene = parse_scene(root, context);
     mistakes.throw_all();
+    tell_dialect(scene, choose_dialect(root, context), root.place());
     return scene;
 }
 
