@@ -96,15 +96,6 @@ SweepRecord fresh_record(const Options &o, const SceneDescription &scene, const 
     return r;
 }
 
-std::filesystem::path make_folder(const Options &o, const SceneDescription &scene) {
-    std::filesystem::path folder = o.out.empty() ? scene.file.stem().string() + "_sweep" : o.out;
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error)
-        throw Error(fmt::format("-o {}: no folder can be made there: {}", folder.string(), error.message()));
-    return folder;
-}
-
 std::vector<DevicePick> pick_devices(const Options &o) {
     const std::vector<DeviceInfo> known = list_devices();
     std::vector<DevicePick> picks;
@@ -210,7 +201,8 @@ int run(const Options &o) {
     const std::vector<DevicePick> devices = pick_devices(o);
     const std::vector<Candidate> candidates = cross(strategies, devices);
     const SweepRecord fresh = fresh_record(o, scene, devices);
-    plan.folder = make_folder(o, scene);
+    plan.folder = o.out.empty() ? scene.file.stem().string() + "_sweep" : o.out;
+    make_folder(plan.folder);
     SweepRecord record = resume(plan.folder, fresh);
     for (const Candidate &c : candidates) // all rows at once, as references to them are kept
         record.strategy(c.name, c.label).device = c.device;

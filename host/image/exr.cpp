@@ -69,26 +69,6 @@ Imf::Slice slice_of(const float *values, int width, const Imath::Box2i &window) 
                       sizeof(float) * size_t(width));
 }
 
-std::string exr_bytes(const Image &image) {
-    Imf::Header header(image.width, image.height);
-    Imf::FrameBuffer frame;
-    for (const Layer &layer : image.layers) {
-        if (layer.values.size() != size_t(image.width) * size_t(image.height))
-            throw std::logic_error("layer " + layer.name + " is not of the image's size");
-        header.channels().insert(layer.name, Imf::Channel(Imf::FLOAT));
-        frame.insert(layer.name, slice_of(layer.values.data(), image.width, header.dataWindow()));
-    }
-    for (const auto &[name, text] : image.metadata)
-        header.insert(name, Imf::StringAttribute(text));
-    MemoryOutput stream;
-    {
-        Imf::OutputFile file(stream, header);
-        file.setFrameBuffer(frame);
-        file.writePixels(image.height);
-    } // the destructor writes the table of line offsets
-    return stream.bytes();
-}
-
 Image read_pixels(Imf::InputFile &file) {
     const Imf::Header &header = file.header();
     const Imath::Box2i window = header.dataWindow();
@@ -125,6 +105,26 @@ Image read_exr(const std::filesystem::path &file) {
     } catch (const std::exception &error) {
         throw Error(fmt::format("{}: cannot be read as OpenEXR: {}", file.string(), error.what()));
     }
+}
+
+std::string exr_bytes(const Image &image) {
+    Imf::Header header(image.width, image.height);
+    Imf::FrameBuffer frame;
+    for (const Layer &layer : image.layers) {
+        if (layer.values.size() != size_t(image.width) * size_t(image.height))
+            throw std::logic_error("layer " + layer.name + " is not of the image's size");
+        header.channels().insert(layer.name, Imf::Channel(Imf::FLOAT));
+        frame.insert(layer.name, slice_of(layer.values.data(), image.width, header.dataWindow()));
+    }
+    for (const auto &[name, text] : image.metadata)
+        header.insert(name, Imf::StringAttribute(text));
+    MemoryOutput stream;
+    {
+        Imf::OutputFile file(stream, header);
+        file.setFrameBuffer(frame);
+        file.writePixels(image.height);
+    } // the destructor writes the table of line offsets
+    return stream.bytes();
 }
 
 void write_exr(const Image &image, const std::filesystem::path &file) { write_safely(file, exr_bytes(image)); }

@@ -25,10 +25,24 @@ struct Image {
 
 Image read_exr(const std::filesystem::path &file);                     // reads every float and half channel
 void write_exr(const Image &image, const std::filesystem::path &file); // float32; by write_safely
-// Writes R, G, B with the exact sRGB curve (IEC 61966-2-1), clamped and rounded to 8 bits. Pixels that are not finite
-// become magenta.
-void write_png(const Image &image, const std::filesystem::path &file);
+std::string exr_bytes(const Image &image);                             // the file that write_exr writes
+
+// How a linear value is shown: it is multiplied by 2^exposure, then mapped, then clamped to 0 to 1 and sRGB-encoded.
+enum class Tonemap {
+    srgb, // as it is
+    aces  // the ACES film curve: x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14), the fit of Narkowicz, 2015
+};
+struct Display {
+    double exposure = 0; // EV
+    Tonemap tonemap = Tonemap::srgb;
+};
+
+// Writes R, G, B as sRGB (IEC 61966-2-1), rounded to 8 bits. Pixels that are not finite become magenta.
+void write_png(const Image &image, const std::filesystem::path &file, const Display &display = {});
 double srgb_encode(double linear); // of a linear value, clamped to 0 to 1
+
+// Makes a folder, and those above it, unless it is there. Throws Error with the reason of the system.
+void make_folder(const std::filesystem::path &folder);
 
 // Error unless write_safely could write this file. Call it before rendering, not after.
 void check_writable(const std::filesystem::path &file);

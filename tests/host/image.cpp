@@ -108,6 +108,23 @@ TEST_CASE("A PNG has the exact sRGB curve, rounded, and magenta for what is not 
     CHECK(green == std::vector<int>{0, 0, 10, 118, 188, 255, 255, 0});
 }
 
+TEST_CASE("Exposure and tone mapping come before the sRGB curve", "[image]") {
+    const ScratchFolder folder;
+    png_image header;
+    const auto red_of = [&](const Display &display) {
+        write_png(grey({0, 0.045f, 0.25f, 1, -1, std::numeric_limits<float>::max()}), folder / "image.png", display);
+        const std::vector<png_byte> bytes = read_png(folder / "image.png", header);
+        std::vector<int> red;
+        for (size_t i = 0; i < 6; ++i)
+            red.push_back(bytes[3 * i]);
+        return red;
+    };
+    // +2 EV: 0.18 -> 118 as without exposure, and 1.
+    CHECK(red_of({.exposure = 2}) == std::vector<int>{0, 118, 255, 255, 0, 255});
+    // 0.18 -> 0.26690, and 1 -> 0.80380, by the formula; -> 0.55346 and 0.90823 by the sRGB curve.
+    CHECK(red_of({.exposure = 2, .tonemap = Tonemap::aces}) == std::vector<int>{0, 141, 232, 252, 0, 255});
+}
+
 TEST_CASE("The sRGB curve joins its two pieces", "[image]") {
     CHECK(srgb_encode(0.0031308) == Approx(0.0404499).epsilon(1e-5));
     CHECK(srgb_encode(0.00313081) == Approx(0.0404499).epsilon(1e-5));
