@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "commands/commands.h"
 #include "commands/options.h"
+#include "image/metrics.h"
 #include "plot/svg.h"
 #include "render/report.h"
 #include "scene/options.h"
@@ -68,9 +69,11 @@ Image read_reference(const std::string &file, const SceneDescription &scene) {
             throw Error(fmt::format("--reference {}: has no layer {}, which a render has", file, channel));
     if (const double empty = image.number("opal.empty_pixels"))
         throw Error(fmt::format("--reference {}: {} of its pixels have no sample", file, empty));
-    const auto of = image.metadata.find("opal.scene");
-    if (of != image.metadata.end() && std::filesystem::path(of->second).filename() != scene.file.filename())
-        throw Error(fmt::format("--reference {}: is an image of {}, not of {}", file, of->second, scene.file.string()));
+    if (const size_t invalid = invalid_pixels(image).count)
+        throw Error(fmt::format("--reference {}: {} of its pixels are NaN or infinite", file, invalid));
+    const std::string of = image.text("opal.scene");
+    if (!of.empty() && std::filesystem::path(of).filename() != scene.file.filename())
+        throw Error(fmt::format("--reference {}: is an image of {}, not of {}", file, of, scene.file.string()));
     return image;
 }
 

@@ -4,7 +4,10 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <variant>
 #include <vector>
+
+#include <nlohmann/json_fwd.hpp>
 
 namespace opal {
 
@@ -13,19 +16,42 @@ struct Layer {
     std::vector<float> values; // width * height, top row first
 };
 
+// The part of a larger image that an image shows, in pixels from the top left of the larger one.
+struct Crop {
+    int x = 0, y = 0, width = 0, height = 0;
+    int of_width = 0, of_height = 0; // of the larger image
+    bool operator==(const Crop &) const = default;
+    bool is_whole() const { return *this == Crop{0, 0, of_width, of_height, of_width, of_height}; }
+};
+
+using Attribute = std::variant<std::string, int, float>;
+
 struct Image {
     int width = 0, height = 0;
     std::vector<Layer> layers;
-    std::map<std::string, std::string> metadata; // string attributes of the EXR header
+    std::map<std::string, Attribute> metadata; // attributes of the EXR header
+    Crop crop{};                               // all 0: the whole image
 
-    const Layer *find(const std::string &name) const;  // nullptr where there is none
-    const Layer &get(const std::string &name) const;   // Error that lists the layers
-    double number(const std::string &attribute) const; // from the metadata; 0 if it is missing or no number
+    const Layer *find(const std::string &name) const;     // nullptr where there is none
+    const Layer &get(const std::string &name) const;      // Error that lists the layers
+    double number(const std::string &attribute) const;    // from the metadata; 0 if it is missing or no number
+    std::string text(const std::string &attribute) const; // from the metadata; empty if it is missing
+    Crop place() const;                                   // crop, or that of the whole image
 };
 
-Image read_exr(const std::filesystem::path &file);                     // reads every float and half channel
-void write_exr(const Image &image, const std::filesystem::path &file); // float32; by write_safely
-std::string exr_bytes(const Image &image);                             // the file that write_exr writes
+nlohmann::json json_of(const Crop &crop);
+Image cropped(const Image &image, const Crop &part); // the part, which the image must hold
+
+// Reads every float and half channel of the part that holds the picture: of several parts the one named rgb, beauty or
+// Combined, else the first with R, G, B. Channels r g b, Y alone and *.Combined.R, .G, .B become R, G, B. Notes tell
+// what was chosen. A data window within a larger display window is a crop, as the attribute opal.crop is.
+Image read_exr(const std::filesystem::path &file);
+
+// Writes the form that most programs read right (measured): one part of scanlines, float32, ZIPS, both windows from
+// (0, 0), colour space and chromaticities (Rec. 709) as attributes. Names of layers ("variance.R") must not begin with
+// a, b, g, r or y, which ImageMagick 7 takes for alpha, blue, green and red. By write_safely.
+void write_exr(const Image &image, const std::filesystem::path &file);
+std::string exr_bytes(const Image &image); // the file that write_exr writes
 
 // How a linear value is shown: it is multiplied by 2^exposure, then mapped, then clamped to 0 to 1 and sRGB-encoded.
 enum class Tonemap {

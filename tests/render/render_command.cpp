@@ -156,8 +156,8 @@ TEST_CASE("Several scenes go into one folder, and one that fails does not stop t
             CHECK(std::filesystem::exists(folder.scratch / "out" / (std::string(name) + ending)));
     CHECK_FALSE(std::filesystem::exists(folder.scratch / "out/broken.exr"));
     // The warning of one scene is not in the header of the next.
-    CHECK_THAT(read_exr(folder.scratch / "out/black.v2.exr").metadata.at("opal.warnings"), Catch::Contains("black"));
-    CHECK(read_exr(folder.scratch / "out/third.exr").metadata.at("opal.warnings") == "[]");
+    CHECK_THAT(read_exr(folder.scratch / "out/black.v2.exr").text("opal.warnings"), Catch::Contains("black"));
+    CHECK(read_exr(folder.scratch / "out/third.exr").text("opal.warnings") == "[]");
 }
 
 TEST_CASE("A message that cannot be printed costs neither image nor JSON", "[render_command]") {
@@ -186,9 +186,9 @@ TEST_CASE("Names of any bytes keep the image and the JSON", "[render_command]") 
     CHECK_THAT(stats["scene"].get<std::string>(), Catch::EndsWith("sz\uFFFDne.xml"));
     CHECK_THAT(stats["warnings"][0].get<std::string>(), Catch::Contains("k\uFFFDse.obj:5:1: dropped 1 triangles"));
     const Image image = read_exr(folder.scratch / "b\344r.exr");
-    CHECK(image.metadata.at("opal.scene") == folder.scene); // the bytes themselves
-    CHECK(image.metadata.at("opal.dialect") == "upstream");
-    CHECK_THAT(image.metadata.at("opal.warnings"), Catch::Contains("k\uFFFDse.obj"));
+    CHECK(image.text("opal.scene") == folder.scene); // the bytes themselves
+    CHECK(image.text("opal.dialect") == "upstream");
+    CHECK_THAT(image.text("opal.warnings"), Catch::Contains("k\uFFFDse.obj"));
 }
 
 TEST_CASE("Ctrl-C writes what there is and exits with a code of its own", "[render_command]") {

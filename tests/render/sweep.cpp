@@ -167,7 +167,7 @@ TEST_CASE("A reference of another size, scene or without colours is refused befo
     };
     REQUIRE(in_place("lamp.xml --spp 1 --width 12 -o small.exr").exit_code == 0);
     REQUIRE(in_place("other.xml --spp 1 -o other.exr").exit_code == 0);
-    write_exr(Image{24, 16, {{"Y", std::vector<float>(24 * 16)}}, {}}, folder.scratch / "grey.exr");
+    write_exr(Image{24, 16, {{"Z", std::vector<float>(24 * 16)}}, {}}, folder.scratch / "grey.exr");
     for (const auto &[file, reason] : {std::pair{"small.exr", "has 12 x 8 pixels, the scene 24 x 16"},
                                        {"other.exr", "is an image of "},
                                        {"grey.exr", "has no layer R"}}) {
