@@ -45,12 +45,6 @@ void check_layers(const Options &o, const Image &image, const Image &reference) 
             note(fmt::format("{}: holds {}, which {} has not and which is left out", file, more, other));
 }
 
-std::string size_text(const Image &image) {
-    const Crop p = image.place();
-    return fmt::format("{} x {}", p.width, p.height) +
-           (p.is_whole() ? "" : fmt::format(" at ({}, {}) of {} x {}", p.x, p.y, p.of_width, p.of_height));
-}
-
 // Cuts the image that holds the other one to its part. Throws Error if they are not of one whole image, or neither
 // holds the other.
 void align(const Options &o, Image &image, Image &reference) {
@@ -63,7 +57,7 @@ void align(const Options &o, Image &image, Image &reference) {
     const bool one_size = a.of_width == b.of_width && a.of_height == b.of_height;
     if (!one_size || (both != a && both != b))
         throw Error(fmt::format("the {} differ: {} has {} pixels, {} has {}", one_size ? "windows" : "sizes", o.image,
-                                size_text(image), o.reference, size_text(reference)));
+                                text_of(a), o.reference, text_of(b)));
     if (a == b)
         return;
     note(fmt::format("the part of {} x {} pixels at ({}, {}), which both hold, is compared", both.width, both.height,

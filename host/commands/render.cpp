@@ -28,7 +28,7 @@ namespace {
 struct Options {
     SceneOptions scene;
     std::vector<std::string> scenes;
-    std::string device, out, json, layers, time, time_limit, target_error, strategy, tonemap = "srgb";
+    std::string device, out, crop, json, layers, time, time_limit, target_error, strategy, tonemap = "srgb";
     unsigned spp = 0, width = 0, height = 0; // 0: the scene's
     unsigned seed = 0;
     double exposure = 0; // EV
@@ -51,10 +51,10 @@ void tell_what_runs(const SceneDescription &scene, const FlatScene &flat, const 
                                 axis == AXIS_integrator ? integrator_name(scene)
                                                         : axes()[axis].choices[scene.strategy[axis]].name);
     const auto count = [](size_t n, const char *what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); };
-    info(fmt::format("scene   {}: {}, {}, {}, {} x {} pixels, {} spp, seed {}", scene.file.string(),
+    info(fmt::format("scene   {}: {}, {}, {}, {} pixels, {} spp, seed {}", scene.file.string(),
                      scene.meshes.size() == 1 ? "1 mesh" : fmt::format("{} meshes", scene.meshes.size()),
                      count(flat.triangles.size(), "triangle"), count(flat.emitters.size(), "emitter"),
-                     scene.camera.width, scene.camera.height, scene.spp, seed));
+                     text_of(scene.camera.window()), scene.spp, seed));
     info("how     " + strategy);
     info(fmt::format("device  {}, {} lane{}, math {}", text_of(pick), lanes, lanes == 1 ? "" : "s",
                      name_of(scene.strategy.math)));
@@ -153,6 +153,7 @@ Request prepare(const Options &o) {
     const Stopwatch load;
     SceneDescription &scene = request.scene = load_scene(o.scene);
     set_size(scene.camera, o.width, o.height);
+    set_crop(scene.camera, o.crop);
     if (o.spp)
         scene.spp = o.spp;
     request.spp = request.rule.given() && !o.spp ? 0 : scene.spp;
@@ -360,6 +361,7 @@ Command render_command() {
               .target = &o->height,
               .help = "Pixels (default: the scene's)",
               .check = Range{1, 65535}},
+             crop_row(o->crop),
              {.flags = "--seed",
               .target = &o->seed,
               .help = "Of the random numbers; the same seed gives the same image"},

@@ -35,7 +35,7 @@ struct Options {
     std::vector<unsigned> spp = {4, 16, 64};
     unsigned replicates = 5, seed = 0, reference_spp = 0, width = 0;
     std::vector<std::string> devices;
-    std::string reference, budget, out, clock = "kernel";
+    std::string reference, crop, budget, out, clock = "kernel";
     bool quiet = false;
 };
 
@@ -61,9 +61,10 @@ void check_numbers(const Options &o) {
 
 Image read_reference(const std::string &file, const SceneDescription &scene) {
     Image image = read_exr(file);
-    if (image.width != scene.camera.width || image.height != scene.camera.height)
-        throw Error(fmt::format("--reference {}: has {} x {} pixels, the scene {} x {}", file, image.width,
-                                image.height, scene.camera.width, scene.camera.height));
+    const Crop part = scene.camera.window(), place = image.place();
+    if (place != part && place != Crop{0, 0, part.of_width, part.of_height, part.of_width, part.of_height})
+        throw Error(fmt::format("--reference {}: has {} pixels, the scene {}", file, text_of(place), text_of(part)));
+    image = cropped(image, part);
     for (const char *channel : {"R", "G", "B"})
         if (!image.find(channel))
             throw Error(fmt::format("--reference {}: has no layer {}, which a render has", file, channel));
@@ -89,6 +90,7 @@ SweepRecord fresh_record(const Options &o, const SceneDescription &scene, const 
     r.clock = o.clock;
     r.width = scene.camera.width;
     r.height = scene.camera.height;
+    r.crop = scene.camera.crop == Crop{} ? "" : text_of(scene.camera.crop);
     r.command = command_line();
     r.integrator = integrator_name(scene);
     r.replicates = o.replicates;
@@ -189,6 +191,7 @@ int run(const Options &o) {
     check_numbers(o);
     SceneDescription scene = load_scene(o.scene);
     set_size(scene.camera, o.width, 0);
+    set_crop(scene.camera, o.crop);
     const std::vector<Candidate> strategies = parse_strategies(scene, o.strategies, o.math);
     const Sources sources = load_sources(o.scene.cl_dir);
     SweepPlan plan{.folder = {},
@@ -282,6 +285,7 @@ Command sweep_command() {
               .target = &o->width,
               .help = "Pixels; keeps the aspect (default: the scene's)",
               .check = Range{1, 65535}},
+             crop_row(o->crop),
              {.flags = "-o,--output",
               .target = &o->out,
               .help = "Folder; a sweep that is there already goes on [SCENE_sweep]",

@@ -36,6 +36,11 @@ double Image::number(const std::string &attribute) const { return std::strtod(te
 
 Crop Image::place() const { return crop == Crop{} ? Crop{0, 0, width, height, width, height} : crop; }
 
+std::string text_of(const Crop &p) {
+    const std::string size = fmt::format("{} x {}", p.width, p.height);
+    return p.is_whole() ? size : fmt::format("{} at ({}, {}) of {} x {}", size, p.x, p.y, p.of_width, p.of_height);
+}
+
 Image cropped(const Image &image, const Crop &part) {
     const Crop from = image.place();
     Image result{part.width, part.height, {}, image.metadata, part.is_whole() ? Crop{} : part};

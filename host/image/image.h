@@ -1,6 +1,8 @@
 // Images of named float layers, and their files.
 #pragma once
 
+#include "base/crop.h"
+
 #include <filesystem>
 #include <map>
 #include <string>
@@ -14,14 +16,6 @@ namespace opal {
 struct Layer {
     std::string name;          // "R", "G", "B", "variance.R", ...
     std::vector<float> values; // width * height, top row first
-};
-
-// The part of a larger image that an image shows, in pixels from the top left of the larger one.
-struct Crop {
-    int x = 0, y = 0, width = 0, height = 0;
-    int of_width = 0, of_height = 0; // of the larger image
-    bool operator==(const Crop &) const = default;
-    bool is_whole() const { return *this == Crop{0, 0, of_width, of_height, of_width, of_height}; }
 };
 
 using Attribute = std::variant<std::string, int, float>;
@@ -40,6 +34,7 @@ struct Image {
 };
 
 nlohmann::json json_of(const Crop &crop);
+std::string text_of(const Crop &crop);               // "32 x 24", of a part: "8 x 8 at (16, 8) of 32 x 24"
 Image cropped(const Image &image, const Crop &part); // the part, which the image must hold
 
 // Reads every float and half channel of the part that holds the picture: of several parts the one named rgb, beauty or

@@ -74,6 +74,8 @@ nlohmann::json RenderReport::json() const {
     j["strategy"] = strategy_json(scene);
     j["width"] = film.width;
     j["height"] = film.height;
+    if (film.crop != Crop{})
+        j["crop"] = json_of(film.crop);
     j["spp"] = spp();
     j["seed"] = seed;
     j["mean_rgb"] = s.mean_rgb;
@@ -186,7 +188,8 @@ std::vector<std::string> film_warnings(const RenderReport &render) {
 
 void add_metadata(Image &image, const json &report, const std::string &command_line) {
     for (const auto &[key, value] : report.items())
-        image.metadata["opal." + key] = attribute_of(value);
+        if (key != "crop") // write_exr notes Image::crop
+            image.metadata["opal." + key] = attribute_of(value);
     image.metadata["opal.command_line"] = command_line;
 }
 

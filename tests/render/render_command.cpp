@@ -113,6 +113,11 @@ TEST_CASE("What cannot be rendered or written is refused, and nothing is left be
     check_refused(folder, "-o none/out.exr", "there is no folder none");
     check_refused(folder, "-o out.jpg", "-o out.jpg: the ending '.jpg' names no format of Opal's; possible: FILE.exr");
     check_refused(folder, "-o out", "-o out: the ending is missing; possible: FILE.exr");
+    check_refused(folder, "--crop 18,0,7,4", "--crop 18,0,7,4: is no part of the image of 24 x 12 pixels");
+    check_refused(folder, "--crop 0,0,0,4", "is no part of the image");
+    check_refused(folder, "--crop -1,0,4,4", "is no part of the image");
+    check_refused(folder, "--crop 1,2,3", "--crop 1,2,3: wants X,Y,W,H");
+    check_refused(folder, "--crop 1,2,3,x", "--crop 1,2,3,x: ");
     check_refused(folder, "-o - --json -", "-o - and --json -: stdout takes one of them");
     check_refused(folder, "-o out.png --no-png", "nothing would be written");
     check_refused(folder, "-o out.png --layers variance", "a PNG holds no layers");
@@ -138,6 +143,24 @@ TEST_CASE("The ending of -o says what is written", "[render_command]") {
     CHECK_THAT(full.err, Catch::Contains("error: stdout: cannot be written: No space left on device"));
     CHECK(run_shell(folder.render("-o /dev/null")).exit_code == 0);
     CHECK(folder.files() == 3);
+}
+
+TEST_CASE("A crop is a part of the image, and the file and the statistics say which", "[render_command]") {
+    const SceneFolder folder;
+    REQUIRE(run_shell(folder.render("--no-png -o whole.exr --width 48")).exit_code == 0);
+    const Outcome outcome =
+        run_shell(folder.render("--no-png -o part.exr --width 48 --crop 30,10,7,5 --json part.json"));
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK_THAT(outcome.err, Catch::Contains("7 x 5 at (30, 10) of 48 x 24 pixels"));
+    const Image whole = read_exr(folder.scratch / "whole.exr"), part = read_exr(folder.scratch / "part.exr");
+    CHECK(part.crop == Crop{30, 10, 7, 5, 48, 24});
+    CHECK(part.get("G").values == cropped(whole, part.crop).get("G").values);
+    const auto stats = nlohmann::json::parse(read_text(folder.scratch / "part.json"));
+    CHECK(stats["width"] == 7);
+    CHECK(stats["spp"] == 4);
+    CHECK(stats["crop"]["y"] == 10);
+    CHECK(stats["crop"]["of_width"] == 48);
 }
 
 TEST_CASE("Several scenes go into one folder, and one that fails does not stop the others", "[render_command]") {

@@ -179,6 +179,31 @@ TEST_CASE("A reference of another size, scene or without colours is refused befo
     }
 }
 
+TEST_CASE("A sweep of a crop is another sweep, and takes the whole image or the crop for a reference", "[sweep]") {
+    const SceneFolder folder;
+    const auto in_place = [&](const std::string &command) {
+        return run_shell("cd " + folder.scratch.path().string() + " && " + OPAL_BINARY + " " + command);
+    };
+    REQUIRE(in_place("lamp.xml --spp 64 --no-png -o whole.exr").exit_code == 0);
+    REQUIRE(in_place("lamp.xml --spp 64 --no-png -o part.exr --crop 4,3,9,8").exit_code == 0);
+    const std::string how = "--strategies lighting=emitter lighting=mis --spp 2 --replicates 2 -o out ";
+    const Outcome outcome = folder.sweep(how + "--crop 4,3,9,8 --reference whole.exr");
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK(read_exr(folder.scratch / "out/equal_time_1.exr").crop == Crop{4, 3, 9, 8, 24, 16});
+    const auto with_whole = nlohmann::json::parse(read_text(folder.scratch / "out/sweep.json"));
+    CHECK(with_whole["crop"] == "9 x 8 at (4, 3) of 24 x 16");
+    CHECK_THAT(folder.sweep(how + "--crop 4,3,9,9 --reference whole.exr").err,
+               Catch::Contains("holds another sweep (crop"));
+    CHECK_THAT(folder.sweep(how + "--reference part.exr").err,
+               Catch::Contains("has 9 x 8 at (4, 3) of 24 x 16 pixels, the scene 24 x 16"));
+    std::filesystem::remove_all(folder.scratch / "out");
+    REQUIRE(folder.sweep(how + "--crop 4,3,9,8 --reference part.exr").exit_code == 0);
+    const auto with_part = nlohmann::json::parse(read_text(folder.scratch / "out/sweep.json"));
+    CHECK(with_part["strategies"][0]["points"][0]["replicates"][0]["mse"] ==
+          with_whole["strategies"][0]["points"][0]["replicates"][0]["mse"]);
+}
+
 TEST_CASE("Several devices and kinds of math are crossed, each device in a process of its own", "[sweep]") {
     if (device().info.platform != "Portable Computing Language") {
         WARN("not tested: only PoCL offers a device twice");
