@@ -30,10 +30,14 @@ std::vector<std::string> with_command(const std::vector<Command> &commands, std:
     const auto names_scene = [](const std::string &word) {
         return std::filesystem::path(word).extension() == ".xml" || std::filesystem::is_regular_file(word);
     };
+    const auto names_file = [](const std::string &word) { // a scene or mesh, perhaps misspelt: reading it says so
+        return !word.starts_with('-') && std::filesystem::path(word).has_extension();
+    };
     const auto is_command = [&](const std::string &word) {
         return std::any_of(commands.begin(), commands.end(), [&](const Command &c) { return word == c.name; });
     };
-    if (!words.empty() && !is_command(words[0]) && std::any_of(words.begin(), words.end(), names_scene))
+    if (!words.empty() && !is_command(words[0]) &&
+        (names_file(words[0]) || std::any_of(words.begin(), words.end(), names_scene)))
         words.insert(words.begin(), "render");
     else if (words.empty() || (!is_command(words[0]) && !words[0].starts_with('-')))
         refuse_command(commands, words.empty() ? std::string() : words[0]);

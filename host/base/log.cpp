@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <mutex>
 
 #include <fcntl.h>
 
@@ -14,7 +15,21 @@ bool quiet_chosen = false, verbose_chosen = false;
 std::vector<std::string> kept_warnings;
 int first_output_error = 0;
 
-void say(const char *prefix, const char *line) { std::fprintf(stderr, "%s%s\n", prefix, line); }
+std::mutex streams;      // bars are told by threads of their own
+bool bar_stands = false; // on stderr, without a line end
+
+// `streams` must be locked.
+void clear_bar() {
+    if (bar_stands)
+        std::fputs(clear_line, stderr);
+    bar_stands = false;
+}
+
+void say(const char *prefix, const char *line) {
+    const std::lock_guard lock(streams);
+    clear_bar();
+    std::fprintf(stderr, "%s%s\n", prefix, line);
+}
 
 } // namespace
 
@@ -48,9 +63,15 @@ void forget_warnings() { kept_warnings.clear(); }
 
 void tell_error(const char *line) { say("error: ", line); }
 
-void show(const std::string &text) { std::fputs(text.c_str(), stderr); }
+void show(const std::string &text) {
+    const std::lock_guard lock(streams);
+    std::fputs(text.c_str(), stderr);
+    bar_stands = !text.ends_with(clear_line) && !text.ends_with('\n');
+}
 
 void print_text(const std::string &text) {
+    const std::lock_guard lock(streams);
+    clear_bar();
     errno = 0;
     const bool taken = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
     if (!taken && first_output_error == 0)

@@ -34,6 +34,18 @@ using MistakeHandler = std::function<void(const SourcePlace &, const std::string
 // Takes an attribute that is not among those wanted, and the sentence that says so. An empty one throws XmlError.
 using AttributeHandler = std::function<void(const std::string &name, const std::string &message)>;
 
+// The lines of a text, found once: a place is then found in logarithmic time, so that files of 1e5 objects load.
+class TextLines {
+public:
+    TextLines(std::string file, std::string_view text); // the text must outlive this
+    SourcePlace place(ptrdiff_t offset) const;          // as place_in
+
+private:
+    std::string file_;
+    std::string_view text_;
+    std::vector<size_t> starts_; // of each line
+};
+
 class XmlDocument;
 
 // An element. Valid as long as its document; cheap to copy.
@@ -67,11 +79,12 @@ public:
     XmlDocument &operator=(const XmlDocument &) = delete;
 
     XmlNode root() const; // the one root element
-    SourcePlace place(ptrdiff_t offset) const { return place_in(file_, text_, offset); }
+    SourcePlace place(ptrdiff_t offset) const { return lines_.place(offset); }
     const std::string &text() const { return text_; }
 
 private:
-    std::string file_, text_;
+    std::string text_;
+    TextLines lines_;
     pugi::xml_document document_;
 };
 } // namespace opal

@@ -171,7 +171,7 @@ std::vector<std::string> film_warnings(const RenderReport &render) {
     if (s.samples > 0 && s.mean_rgb == std::array<double, 3>{} && asks_lights && has_light(render.scene))
         lines.push_back(
             fmt::format("{}: the image is black, although the scene has lights: none of {} samples found light",
-                        render.scene.file.string(), s.samples));
+                        render.scene.place.text(), s.samples));
     if (s.empty_pixels == 0)
         return lines;
     const size_t pixels = film.count.size();

@@ -106,6 +106,7 @@ struct SceneDescription {
     double visibility_length = 1; // integrator av: how far it looks
     unsigned spp = 1;
     bool sample_count_given = false;
+    SourcePlace place;         // of the <scene>
     SourcePlace sampler_place; // of the <sampler>, else of the <scene>
 };
 

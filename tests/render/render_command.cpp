@@ -84,7 +84,7 @@ TEST_CASE("A black image is told where the scene has lights, and what lets nothi
         CHECK(outcome.exit_code == 0);
         return outcome.err;
     };
-    const std::string black = "plain.xml: the image is black, although the scene has lights: none of 1152 samples";
+    const std::string black = "plain.xml:1:1: the image is black, although the scene has lights: none of 1152 samples";
     const std::string beside = render("5 -5 3", "50 -5 3", "--quiet");
     CHECK_THAT(beside, Catch::Contains(black) && !Catch::Contains("nearClip"));
     const std::string behind = render("5 -5 3", "5 -5 -3", "--quiet");

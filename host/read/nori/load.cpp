@@ -75,7 +75,7 @@ SceneDescription parse_scene(const XmlNode &node, const ParseContext &context) {
     scene.file = node.place().file;
     const DialectChoice dialect = choose_dialect(node, context);
     scene.dialect = dialect.dialect;
-    scene.sampler_place = node.place();
+    scene.place = scene.sampler_place = node.place();
     apply_integrator(scene.strategy, find_integrator(scene.integrator_type));
     const auto camera = properties.child("camera");
     if (!camera)
