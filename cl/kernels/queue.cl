@@ -27,7 +27,8 @@ static Queue queue_of(global const Settings *settings, uint item, uint items, ui
     uint left = film.left + (tile % columns) * tile_width, top = film.top + (tile / columns) * tile_height;
     uint done = min(chunk * chunk_samples, pass_samples);
     uint samples = item < items ? min(chunk_samples, pass_samples - done) : 0;
-    uint right = min(left + tile_width, film.left + film.width), bottom = min(top + tile_height, film.top + film.height);
+    uint right = min(left + tile_width, film.left + film.width);
+    uint bottom = min(top + tile_height, film.top + film.height);
     Queue queue = {left, top, right, samples ? bottom : top, samples, pass_first + done, pass_first, pass_samples,
                    left, top, 0};
     return queue;
