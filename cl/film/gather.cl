@@ -65,7 +65,7 @@ static void gather_own(FilmPlace at, global const float *samples, global float *
 static void gather_around(FilmPlace at, global const Settings *settings, global const float *samples,
                           global float *film, uint pass_first, uint pass_samples) {
     Scene scene = {settings}; // film_offset reads no table
-    uint width = settings->width, height = settings->height;
+    uint width = settings->film.width, height = settings->film.height;
     Sum sums[4];
     for (uint c = 0; c < 4; c++) sums[c] = film_load(film, at, FILM_WEIGHTED + c, FILM_WEIGHTED_LOW + c);
     int reach = (int)ceil(settings->filter_radius - 0.5f);
@@ -73,10 +73,11 @@ static void gather_around(FilmPlace at, global const Settings *settings, global 
     for (uint s = 0; s < pass_samples; s++)
         for (int dy = -reach; dy <= reach; dy++)
             for (int dx = -reach; dx <= reach; dx++) {
-                uints nx = x + (uint)dx, ny = y + (uint)dy; // below 0 wraps to far beyond the image
+                uints nx = x + (uint)dx, ny = y + (uint)dy; // below 0 wraps to far beyond the film
                 mask inside = to_mask(nx < width) & to_mask(ny < height);
                 uints pixel = uints_pick(inside, ny * width + nx, (uints)(0));
-                v2 offset = film_offset(&scene, sampler_start(pixel, (uints)(pass_first + s), settings->seed));
+                uints of_image = (ny + settings->film.top) * settings->width + (nx + settings->film.left);
+                v2 offset = film_offset(&scene, sampler_start(of_image, (uints)(pass_first + s), settings->seed));
                 real w = filter_1d(settings, offset.x - R(0.5) + (real1)dx) *
                          filter_1d(settings, offset.y - R(0.5) + (real1)dy);
                 v3 c = sample_color(samples, pixel, s, pass_samples);
@@ -94,7 +95,7 @@ static void gather_around(FilmPlace at, global const Settings *settings, global 
 kernel void gather(global const Settings *settings, global const float *samples, global float *film,
                    global uint *counts, volatile global uint *invalid, uint pass_first, uint pass_samples) {
     FilmPlace at;
-    at.pixels = settings->width * settings->height;
+    at.pixels = settings->film.width * settings->film.height;
     at.first = (uint)get_global_id(0) * LANES;
     if (at.first >= at.pixels) return;
     uint index[LANES];

@@ -4,6 +4,17 @@
 // their order, into sums of two floats (Knuth's two-sum), so that neither the cut into passes nor a million samples
 // change a bit. Samples that are OPAL_SAMPLE_EMPTY are skipped; those that are not finite are counted and left out.
 #include "core/lanes.cl"
+#include "shared/types.h"
+
+// The film's pixel of the image's pixel y * width + x. The film holds a window of the image, and random numbers are
+// drawn by the pixel of the image, so that a crop shows what the whole image shows there.
+static uints film_pixel(global const Settings *settings, uints pixel) {
+    PixelWindow film = settings->film;
+    uint width = settings->width;
+    if (film.width == width) return pixel - film.top * width;
+    uints y = pixel / width, x = pixel - y * width;
+    return (y - film.top) * film.width + (x - film.left);
+}
 
 typedef struct { real hi, lo; } Sum;
 

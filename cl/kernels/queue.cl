@@ -1,6 +1,7 @@
 // queue: the samples of a work-item, and the ones that are finished. one_lane/ and many_lanes/path_starts.cl start
 // their paths.
 #include "core/lanes.cl"
+#include "film/sums.cl"
 #include "integrators/steps.cl"
 #include "scene.cl"
 #include "shared/counters.h"
@@ -9,7 +10,7 @@
 
 // The samples of a work-item: pixels of its tile, row by row, each with `samples` samples from first_sample on.
 typedef struct {
-    uint left, top, right, bottom;  // the tile's pixels
+    uint left, top, right, bottom;  // the tile's pixels, in the whole image
     uint samples, first_sample;     // of this work-item, in each pixel
     uint pass_first, pass_samples;  // of the pass
     uint x, y, sample;              // the next one
@@ -20,14 +21,16 @@ typedef struct {
 // shape.
 static Queue queue_of(global const Settings *settings, uint item, uint items, uint tile_width, uint tile_height,
                       uint chunks, uint chunk_samples, uint pass_first, uint pass_samples) {
-    uint width = settings->width, height = settings->height;
-    uint columns = (width + tile_width - 1) / tile_width;
+    PixelWindow film = settings->film;
+    uint columns = (film.width + tile_width - 1) / tile_width;
     uint tile = item / chunks, chunk = item - tile * chunks;
-    uint left = (tile % columns) * tile_width, top = (tile / columns) * tile_height;
+    uint left = film.left + (tile % columns) * tile_width, top = film.top + (tile / columns) * tile_height;
     uint done = min(chunk * chunk_samples, pass_samples);
     uint samples = item < items ? min(chunk_samples, pass_samples - done) : 0;
-    Queue queue = {left, top, min(left + tile_width, width), samples ? min(top + tile_height, height) : top,
-                   samples, pass_first + done, pass_first, pass_samples, left, top, 0};
+    uint right = min(left + tile_width, film.left + film.width);
+    uint bottom = min(top + tile_height, film.top + film.height);
+    Queue queue = {left, top, right, samples ? bottom : top, samples, pass_first + done, pass_first, pass_samples,
+                   left, top, 0};
     return queue;
 }
 
@@ -49,7 +52,8 @@ static void advance(Queue *queue) {
 static void retire(const Scene *scene, global float *samples, const Queue *queue, const Path *path, uint ended) {
     uint place[LANES];
     real1 r[LANES], g[LANES], b[LANES];
-    STORE(path->sampler.pixel * queue->pass_samples + (path->sampler.sample - queue->pass_first), place);
+    uints pixel = film_pixel(scene->settings, path->sampler.pixel);
+    STORE(pixel * queue->pass_samples + (path->sampler.sample - queue->pass_first), place);
     STORE(path->radiance.x, r);
     STORE(path->radiance.y, g);
     STORE(path->radiance.z, b);

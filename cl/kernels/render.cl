@@ -54,7 +54,8 @@ kernel void clear(global const Settings *settings, global float *samples, uint f
     for (uint y = q.top; y < q.bottom; y++)
         for (uint x = q.left; x < q.right; x++)
             for (uint s = 0; s < q.samples; s++) {
-                ulong sample = (ulong)(y * settings->width + x) * pass_samples + (q.first_sample - pass_first) + s;
+                uint pixel = (y - settings->film.top) * settings->film.width + (x - settings->film.left);
+                ulong sample = (ulong)pixel * pass_samples + (q.first_sample - pass_first) + s;
                 samples[OPAL_SAMPLE_FLOATS * sample] = as_float(OPAL_SAMPLE_EMPTY);
             }
 }

@@ -57,9 +57,16 @@ OPAL_SIZE_CHECK(MeshRecord, 8);
 #define OPAL_FILTER_ENUM(name) FILTER_##name,
 enum { OPAL_FILTERS(OPAL_FILTER_ENUM) FILTER_COUNT };
 
+// A window of the image, in pixels from its top left.
+typedef struct {
+    uint left, top, width, height;
+} PixelWindow;
+OPAL_SIZE_CHECK(PixelWindow, 16);
+
 // All numbers of a scene that are no table. Positions are in the flattened scene's units.
 typedef struct {
-    uint width, height;             // pixels
+    uint width, height;             // of the whole image, pixels
+    PixelWindow film;               // what is rendered of it: all, or a crop and what its filter needs around it
     uint spp;                       // samples of a pixel in the whole render (the strata of --sampler stratified)
     uint seed;
     FaceRange face_list;            // all of it
@@ -80,7 +87,7 @@ typedef struct {
     float filter_b, filter_c;       // mitchell
     int choices[AXIS_COUNT];        // CHOICE_* of each axis; read by the general kernel only
 } Settings;
-OPAL_SIZE_CHECK(Settings, 108 + 4 * AXIS_COUNT);
+OPAL_SIZE_CHECK(Settings, 124 + 4 * AXIS_COUNT);
 
 #ifdef __cplusplus
 }

@@ -59,6 +59,7 @@ void warn(const std::string &line) {
 }
 
 const std::vector<std::string> &warnings() { return kept_warnings; }
+void forget_warnings() { kept_warnings.clear(); }
 
 void tell_error(const char *line) { say("error: ", line); }
 

@@ -17,6 +17,7 @@ void detail(const std::string &text); // printed only with --verbose
 void note(const std::string &line);   // prints "note: ...": harmless, and worth knowing once; silent with --quiet
 void warn(const std::string &line);   // prints "warning: ..."
 const std::vector<std::string> &warnings();
+void forget_warnings();            // those so far: the next render's reports begin anew
 void tell_error(const char *line); // prints "error: ..."; the process then ends
 // Prints to stderr without a line end: a progress bar. The next message or result takes its place.
 void show(const std::string &text);

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -32,14 +34,44 @@ std::string missing_layers(const Image &a, const Image &b) {
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
-void check_comparable(const Options &o, const Image &image, const Image &reference) {
-    if (image.width != reference.width || image.height != reference.height)
-        throw Error(fmt::format("the sizes differ: {} has {} x {} pixels, {} has {} x {}", o.image, image.width,
-                                image.height, o.reference, reference.width, reference.height));
-    for (const auto &[file, other, missing] : {std::tuple{o.reference, o.image, missing_layers(image, reference)},
-                                               std::tuple{o.image, o.reference, missing_layers(reference, image)}})
-        if (!missing.empty())
-            throw Error(fmt::format("the layers differ: {} has no {}, which {} holds", file, missing, other));
+void check_layers(const Options &o, const Image &image, const Image &reference) {
+    for (const auto &[file, read] : {std::pair(o.image, &image), std::pair(o.reference, &reference)})
+        for (const char *name : {"R", "G", "B"})
+            if (!read->find(name))
+                throw Error(fmt::format("{}: has no layer {}, which is compared", file, name));
+    for (const auto &[file, other, more] : {std::tuple{o.image, o.reference, missing_layers(image, reference)},
+                                            std::tuple{o.reference, o.image, missing_layers(reference, image)}})
+        if (!more.empty())
+            note(fmt::format("{}: holds {}, which {} has not and which is left out", file, more, other));
+}
+
+// Cuts the image that holds the other one to its part. Throws Error if they are not of one whole image, or neither
+// holds the other.
+void align(const Options &o, Image &image, Image &reference) {
+    const Crop a = image.place(), b = reference.place();
+    Crop both = a;
+    both.x = std::max(a.x, b.x);
+    both.y = std::max(a.y, b.y);
+    both.width = std::min(a.x + a.width, b.x + b.width) - both.x;
+    both.height = std::min(a.y + a.height, b.y + b.height) - both.y;
+    const bool one_size = a.of_width == b.of_width && a.of_height == b.of_height;
+    if (!one_size || (both != a && both != b))
+        throw Error(fmt::format("the {} differ: {} has {} pixels, {} has {}", one_size ? "windows" : "sizes", o.image,
+                                text_of(a), o.reference, text_of(b)));
+    if (a == b)
+        return;
+    note(fmt::format("the part of {} x {} pixels at ({}, {}), which both hold, is compared", both.width, both.height,
+                     both.x, both.y));
+    image = cropped(image, both);
+    reference = cropped(reference, both);
+}
+
+// The error of pixels that are not finite; empty if there are none.
+std::string invalid_text(const std::string &file, const InvalidPixels &invalid, const Crop &place) {
+    if (invalid.count == 0)
+        return "";
+    return fmt::format("{}: {} pixels are NaN or infinite, the first at ({}, {}); the figures leave them out", file,
+                       invalid.count, place.x + invalid.x, place.y + invalid.y);
 }
 
 // The samples a pixel that opal render noted in the header; 0 if there is no note.
@@ -53,6 +85,10 @@ std::string why_untested(const std::string &file, const Image &image) {
             return fmt::format("{} holds no layer {} (opal render --layers variance)", file, name);
     if (const double empty = empty_pixels(image))
         return fmt::format("{} has {} pixels without a sample", file, empty);
+    for (const Layer &layer : image.layers)
+        if ((is_variance(layer.name) || layer.name.size() == 1) &&
+            !std::ranges::all_of(layer.values, [](float value) { return std::isfinite(value); }))
+            return fmt::format("{} has pixels in {} that are NaN or infinite", file, layer.name);
     if (const double samples = samples_of(image); samples > 0 && samples < 2)
         return fmt::format("{} has one sample a pixel and so no variance", file);
     if (const double single = image.number("opal.single_sample_pixels"))
@@ -68,6 +104,7 @@ stats::Estimate estimated(const Image &image) {
 void write_map(const std::filesystem::path &exr, const Image &image, const Image &reference,
                const stats::TileTest *test) {
     Image d = difference(image, reference);
+    d.crop = image.crop;
     const Image colours = difference_colours(d);
     if (test)
         for (Layer &layer : tile_map(*test, test->z, d.width, d.height).layers)
@@ -147,27 +184,35 @@ int run(const Options &o) {
     }
     if (!o.json.empty())
         check_writable(o.json);
-    const Image image = read_exr(o.image), reference = read_exr(o.reference);
-    check_comparable(o, image, reference);
+    Image image = read_exr(o.image), reference = read_exr(o.reference);
+    check_layers(o, image, reference);
+    align(o, image, reference);
+    const Crop place = image.place();
     for (const auto &[file, read] : {std::pair(o.image, &image), std::pair(o.reference, &reference)})
         if (const double empty = empty_pixels(*read))
             warn(fmt::format("{}: {} pixels without a sample; the figures take them for black", file, empty));
 
-    const Metrics metrics = compare_images(image, reference);
+    std::vector<std::string> invalid;
+    for (const auto &[file, read] : {std::pair(o.image, &image), std::pair(o.reference, &reference)})
+        if (std::string line = invalid_text(file, invalid_pixels(*read), place); !line.empty())
+            invalid.push_back(std::move(line));
+    Metrics metrics = compare_images(image, reference);
+    metrics.max_x += place.x;
+    metrics.max_y += place.y;
     nlohmann::json report = json_of(metrics);
     report.update(object({{"image", o.image}, {"reference", o.reference}}));
-    if (!o.quiet) {
+    if (!o.quiet)
         print_text(text_of(metrics));
-        if (metrics.invalid)
-            warn(fmt::format("{} pixels are NaN or infinite in either image and are left out of the figures",
-                             metrics.invalid));
-    }
     std::string untested = why_untested(o.image, image);
     if (untested.empty())
         untested = why_untested(o.reference, reference);
     std::optional<stats::TileTest> test;
     if (untested.empty()) {
         test = stats::tile_test(estimated(image), estimated(reference));
+        for (stats::PixelBox *box : {&test->region.box, &test->worst_tile}) {
+            box->x += place.x;
+            box->y += place.y;
+        }
         report["test"] = json_of(*test, o.significance);
         if (!o.quiet)
             print_text(text_of(*test, o.significance));
@@ -180,6 +225,8 @@ int run(const Options &o) {
         write_map(o.out, image, reference, test ? &*test : nullptr);
     if (!o.json.empty())
         write_safely(o.json, dump(report, 2) + "\n");
+    if (!invalid.empty())
+        throw ErrorList(invalid);
     return 0;
 }
 

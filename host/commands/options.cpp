@@ -1,10 +1,15 @@
 #include "commands/options.h"
 
+#include "base/error.h"
 #include "base/table.h"
+#include "base/values.h"
 #include "scene/options.h"
 #include "strategies/check.h"
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
 
 namespace opal {
 
@@ -91,6 +96,34 @@ KernelChoice choose_kernel(const std::string &device, const SceneDescription &sc
 
 Sources load_sources(const std::string &cl_dir) {
     return cl_dir.empty() ? Sources::embedded() : Sources::from_folder(cl_dir);
+}
+
+OptionRow crop_row(std::string &crop) {
+    return {.flags = "--crop",
+            .target = &crop,
+            .help =
+                "Render only this part of the image, in pixels from its top left: the same bits as there in the whole "
+                "image",
+            .type = "X,Y,W,H"};
+}
+
+void set_crop(Camera &camera, const std::string &crop) {
+    if (crop.empty())
+        return;
+    const std::vector<std::string_view> words = split(crop);
+    std::vector<int> numbers;
+    try {
+        std::ranges::transform(words, std::back_inserter(numbers), parse_integer);
+    } catch (const Error &error) {
+        throw Error(fmt::format("--crop {}: {}", crop, error.what()));
+    }
+    if (numbers.size() != 4)
+        throw Error(fmt::format("--crop {}: wants X,Y,W,H, four whole numbers of pixels", crop));
+    const int x = numbers[0], y = numbers[1], width = numbers[2], height = numbers[3];
+    if (x < 0 || y < 0 || width < 1 || height < 1 || width > camera.width - x || height > camera.height - y)
+        throw Error(
+            fmt::format("--crop {}: is no part of the image of {} x {} pixels", crop, camera.width, camera.height));
+    camera.crop = {x, y, width, height, camera.width, camera.height};
 }
 
 void set_size(Camera &camera, unsigned width, unsigned height) {

@@ -34,6 +34,10 @@ KernelChoice choose_kernel(const std::string &device, const SceneDescription &sc
 // The kernels' sources in that folder; empty: the embedded ones.
 Sources load_sources(const std::string &cl_dir);
 
+OptionRow crop_row(std::string &crop); // --crop, for set_crop
+// Sets the camera's crop, "X,Y,W,H", after its size; empty: none. Throws Error if it is no part of the image.
+void set_crop(Camera &camera, const std::string &crop);
+
 // Sets the image's size in pixels; 0: not given. If one side is given, the other keeps the aspect.
 void set_size(Camera &camera, unsigned width, unsigned height);
 

@@ -1,4 +1,4 @@
-// opal render: a scene to an EXR and a PNG.
+// opal render: scenes to EXRs and PNGs.
 #include "base/command_line.h"
 #include "base/error.h"
 #include "base/json.h"
@@ -18,15 +18,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+
 namespace opal {
 
 namespace {
 
 struct Options {
     SceneOptions scene;
-    std::string device, out, json, layers, time, time_limit, target_error, strategy;
+    std::vector<std::string> scenes;
+    std::string device, out, crop, json, layers, time, time_limit, target_error, strategy, tonemap = "srgb";
     unsigned spp = 0, width = 0, height = 0; // 0: the scene's
     unsigned seed = 0;
+    double exposure = 0; // EV
     bool no_png = false, quiet = false, verbose = false;
 };
 
@@ -46,10 +51,10 @@ void tell_what_runs(const SceneDescription &scene, const FlatScene &flat, const 
                                 axis == AXIS_integrator ? integrator_name(scene)
                                                         : axes()[axis].choices[scene.strategy[axis]].name);
     const auto count = [](size_t n, const char *what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); };
-    info(fmt::format("scene   {}: {}, {}, {}, {} x {} pixels, {} spp, seed {}", scene.file.string(),
+    info(fmt::format("scene   {}: {}, {}, {}, {} pixels, {} spp, seed {}", scene.file.string(),
                      scene.meshes.size() == 1 ? "1 mesh" : fmt::format("{} meshes", scene.meshes.size()),
                      count(flat.triangles.size(), "triangle"), count(flat.emitters.size(), "emitter"),
-                     scene.camera.width, scene.camera.height, scene.spp, seed));
+                     text_of(scene.camera.window()), scene.spp, seed));
     info("how     " + strategy);
     info(fmt::format("device  {}, {} lane{}, math {}", text_of(pick), lanes, lanes == 1 ? "" : "s",
                      name_of(scene.strategy.math)));
@@ -79,33 +84,83 @@ void warn_of_fast_functions(const Device &device, const BuildOptions &build, con
                          device.info.name, device.info.driver, fmt::join(wrong, "; ")));
 }
 
+// Where a render's image goes. Empty: not written.
+struct ImageFiles {
+    std::filesystem::path exr, png;
+    bool to_stdout = false; // an EXR
+
+    std::string text() const {
+        const std::string first = to_stdout ? "an EXR to stdout" : exr.string();
+        return first + (first.empty() || png.empty() ? "" : " and ") + png.string();
+    }
+};
+
+bool names_folder(const std::string &out) { return out.ends_with('/') || std::filesystem::is_directory(out); }
+
+// The files that -o asks for. Throws Error if it names no format that Opal writes.
+ImageFiles image_files(const Options &o, const std::filesystem::path &scene) {
+    if (o.out == "-")
+        return {.exr = {}, .png = {}, .to_stdout = true};
+    std::filesystem::path file = o.out;
+    if (o.out.empty() || names_folder(o.out))
+        file = file / (scene.stem().string() + ".exr");
+    else if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file))
+        return {.exr = file, .png = {}}; // /dev/null: nothing can be written beside it
+    std::string ending = file.extension().string();
+    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    if (ending == ".png")
+        return {.exr = {}, .png = file};
+    if (ending != ".exr")
+        throw Error(
+            fmt::format("-o {}: the ending {}; possible: FILE.exr (an EXR and a PNG beside it), FILE.png (only a "
+                        "PNG), FOLDER/, - (an EXR to stdout)",
+                        o.out, ending.empty() ? "is missing" : "'" + ending + "' names no format of Opal's"));
+    return {.exr = file,
+            .png = o.no_png ? std::filesystem::path() : std::filesystem::path(file).replace_extension(".png")};
+}
+
+// Throws Error if options that say what is written contradict each other.
+void check_output(const Options &o, const ImageFiles &files) {
+    if (files.to_stdout && o.json == "-")
+        throw Error("-o - and --json -: stdout takes one of them");
+    if (files.exr.empty() && !files.to_stdout) {
+        if (o.no_png)
+            throw Error(fmt::format("-o {} and --no-png: nothing would be written", o.out));
+        if (!o.layers.empty())
+            throw Error(fmt::format("--layers {}: a PNG holds no layers; give -o FILE.exr", o.layers));
+    }
+    if (files.png.empty() && (o.exposure != 0 || o.tonemap != "srgb"))
+        throw Error("--exposure and --tonemap: they shape the PNG, and none is written");
+}
+
 // The request of a render, checked before a device is opened.
 struct Request {
     SceneDescription scene;
     StopRule rule;
-    unsigned spp;                         // 0: the rule alone decides
-    std::filesystem::path exr, png, json; // empty: not written
+    unsigned spp; // 0: the rule alone decides
+    ImageFiles files;
+    Display display;            // of the PNG
+    std::filesystem::path json; // empty: not written
     double load_seconds;
 };
 
 Request prepare(const Options &o) {
     Request request;
     request.rule = stop_rule(o);
+    request.files = image_files(o, o.scene.file);
+    check_output(o, request.files);
+    request.display = {.exposure = o.exposure, .tonemap = o.tonemap == "aces" ? Tonemap::aces : Tonemap::srgb};
     const Stopwatch load;
     SceneDescription &scene = request.scene = load_scene(o.scene);
     set_size(scene.camera, o.width, o.height);
+    set_crop(scene.camera, o.crop);
     if (o.spp)
         scene.spp = o.spp;
     request.spp = request.rule.given() && !o.spp ? 0 : scene.spp;
-    request.exr = o.out.empty() ? scene.file.stem().replace_extension(".exr") : std::filesystem::path(o.out);
     request.json = o.json;
-    const std::filesystem::path png = std::filesystem::path(request.exr).replace_extension(".png");
-    if (png == request.exr)
-        throw Error(fmt::format("--output {}: names the EXR file; the PNG goes beside it", request.exr.string()));
-    const bool beside_device = std::filesystem::exists(request.exr) && !std::filesystem::is_regular_file(request.exr);
-    if (!o.no_png && !beside_device) // none beside /dev/null
-        request.png = png;
-    for (const std::filesystem::path &file : {request.exr, request.png, request.json})
+    if (names_folder(o.out))
+        make_folder(o.out);
+    for (const std::filesystem::path &file : {request.files.exr, request.files.png, request.json})
         if (!file.empty())
             check_writable(file);
     request.load_seconds = load.seconds();
@@ -115,6 +170,15 @@ Request prepare(const Options &o) {
     for (const std::string &line : scene_notes(scene, o.spp || request.rule.given()))
         note(line);
     return request;
+}
+
+void write_image(const Image &image, const ImageFiles &files, const Display &display) {
+    if (files.to_stdout)
+        print_text(exr_bytes(image));
+    if (!files.exr.empty())
+        write_exr(image, files.exr);
+    if (!files.png.empty())
+        write_png(image, files.png, display);
 }
 
 // Writes the image with the report in its header, and tells the result. Returns the exit code.
@@ -134,9 +198,7 @@ int report(const Request &request, const RenderedFilm &rendered, const RenderRep
         json["asked_spp"] = rendered.stopped.spp;
     add_metadata(image, json, command_line());
     const Stopwatch write;
-    write_exr(image, request.exr);
-    if (!request.png.empty())
-        write_png(image, request.png);
+    write_image(image, request.files, request.display);
     json["seconds"]["write"] = write.seconds();
     if (!request.json.empty())
         write_safely(request.json, dump(json, 2) + "\n");
@@ -147,16 +209,14 @@ int report(const Request &request, const RenderedFilm &rendered, const RenderRep
         if (!stop.met)
             warn(stop.warning());
     }
-    info(fmt::format("wrote   {}{}", request.exr.string(), request.png.empty() ? "" : " and " + request.png.string()));
+    info("wrote   " + request.files.text());
     if (rendered.stopped.complete)
         return 0;
     warn(fmt::format("interrupted: the image holds {:.4g} of {} samples a pixel", render.spp(), rendered.stopped.spp));
     return interrupt_exit_code();
 }
 
-int run(const Options &o) {
-    set_quiet(o.quiet);
-    set_verbose(o.verbose);
+int render_scene(const Options &o) {
     Request request = prepare(o);
     SceneDescription &scene = request.scene;
     const auto [pick, build] = choose_kernel(o.device, scene);
@@ -184,65 +244,138 @@ int run(const Options &o) {
                   o.layers == "variance");
 }
 
+// Throws Error if the images of several scenes cannot go to files of their own.
+void check_several(const Options &o) {
+    if (!names_folder(o.out))
+        throw Error(fmt::format("{} scenes: their images need a folder, -o FOLDER/", o.scenes.size()));
+    if (!o.json.empty())
+        throw Error(fmt::format("--json {}: holds one render, and there are {} scenes; the header of each EXR has the "
+                                "same statistics",
+                                o.json, o.scenes.size()));
+    std::map<std::string, std::string> scene_of;
+    for (const std::string &scene : o.scenes)
+        if (const auto [other, is_new] = scene_of.try_emplace(image_files(o, scene).text(), scene); !is_new)
+            throw Error(fmt::format("{} and {}: both images would be {}", other->second, scene, other->first));
+}
+
+void tell_errors(const std::exception &error) {
+    if (const auto *list = dynamic_cast<const ErrorList *>(&error))
+        for (const std::string &line : list->lines())
+            tell_error(line.c_str());
+    else
+        tell_error(error.what());
+}
+
+// Renders one scene after the other. One that fails does not stop the others.
+int render_scenes(Options o) {
+    check_several(o);
+    std::vector<std::string> failed;
+    for (const std::string &scene : o.scenes) {
+        forget_warnings();
+        o.scene.file = scene;
+        try {
+            if (const int code = render_scene(o))
+                return code; // interrupted
+        } catch (const std::exception &error) {
+            tell_errors(error);
+            failed.push_back(scene);
+        }
+    }
+    if (failed.empty())
+        return 0;
+    throw Error(fmt::format("{} of {} scenes failed: {}", failed.size(), o.scenes.size(), fmt::join(failed, ", ")));
+}
+
+int run(Options &o) {
+    set_quiet(o.quiet);
+    set_verbose(o.verbose);
+    if (o.scenes.size() > 1)
+        return render_scenes(o);
+    o.scene.file = o.scenes.front();
+    return render_scene(o);
+}
+
 } // namespace
 
 Command render_command() {
     auto o = std::make_shared<Options>();
-    return {.name = "render",
-            .help = "Render a scene to an EXR and a PNG",
-            .options = append(
-                scene_rows(o->scene),
-                {device_row(o->device),
-                 {.flags = "-o,--output",
-                  .target = &o->out,
-                  .help = "EXR file; the PNG goes beside it (default: the scene's name, in the current folder)"},
-                 {.flags = "--no-png", .target = &o->no_png, .help = "Write no PNG"},
-                 {.flags = "--spp",
-                  .target = &o->spp,
-                  .help = "Samples per pixel (default: the scene's sampleCount)",
-                  .check = Range{1u, 0xffffffffu}},
-                 {.flags = "--time",
-                  .target = &o->time,
-                  .help = "Stop after this much kernel time (30s, 2min); --spp is then the most",
-                  .type = "TIME"},
-                 {.flags = "--target-error",
-                  .target = &o->target_error,
-                  .help = "Stop when the relative standard error of the image's mean luminance is below this (1%)\n"
-                          "  A pilot of other samples decides how many, so that the image stays unbiased",
-                  .type = "ERROR",
-                  .excludes = "--time"},
-                 {.flags = "--time-limit",
-                  .target = &o->time_limit,
-                  .help = "Stop rendering this long after the start of the process, by the wall clock: loading and "
-                          "compiling count, writing comes after; --spp is then the most",
-                  .type = "TIME",
-                  .excludes = "--target-error"},
-                 {.flags = "--strategy",
-                  .target = &o->strategy,
-                  .help = "auto: short pilots find which way to sample light costs least on this scene and device",
-                  .check = OneOf<std::string>{{"auto"}}},
-                 {.flags = "--width",
-                  .target = &o->width,
-                  .help = "Pixels (default: the scene's; one of both keeps its aspect)",
-                  .check = Range{1, 65535}},
-                 {.flags = "--height",
-                  .target = &o->height,
-                  .help = "Pixels (default: the scene's)",
-                  .check = Range{1, 65535}},
-                 {.flags = "--seed",
-                  .target = &o->seed,
-                  .help = "Of the random numbers; the same seed gives the same image"},
-                 {.flags = "--json", .target = &o->json, .help = "File for the statistics of the render"},
-                 {.flags = "--layers",
-                  .target = &o->layers,
-                  .help = "More layers for the EXR: variance (of each pixel's mean)",
-                  .check = OneOf<std::string>{{"variance"}}},
-                 {.flags = "--quiet", .target = &o->quiet, .help = "Print nothing but warnings and errors"},
-                 {.flags = "--verbose",
-                  .target = &o->verbose,
-                  .help = "Print what the driver remarks on the kernels, too",
-                  .excludes = "--quiet"}}),
-            .run = [o] { return run(*o); }};
+    return {
+        .name = "render",
+        .help = "Render scenes to EXRs and PNGs",
+        .options = append(
+            append({{.flags = "SCENE.xml",
+                     .target = &o->scenes,
+                     .help = "The scene, in Nori's format; several need -o FOLDER/, and one that fails does not stop "
+                             "the others",
+                     .type = "",
+                     .required = true,
+                     .many_words = true}},
+                   strategy_rows(o->scene)),
+            {device_row(o->device),
+             {.flags = "-o,--output",
+              .target = &o->out,
+              .help = "FILE.exr: an EXR, and a PNG beside it; FILE.png: only a PNG; FOLDER/: both, by the scene's "
+                      "name; -: an EXR to stdout [the scene's name, in the current folder]",
+              .type = "FILE"},
+             {.flags = "--no-png", .target = &o->no_png, .help = "Write no PNG"},
+             {.flags = "--exposure",
+              .target = &o->exposure,
+              .help = "Multiplies the PNG's radiance by 2^EV; the EXR stays as it is",
+              .check = Range{-64.0, 64.0},
+              .type = "EV"},
+             {.flags = "--tonemap",
+              .target = &o->tonemap,
+              .help = "How the PNG shows a radiance x (after --exposure): srgb clamps it to 0 to 1; aces takes "
+                      "x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14), Narkowicz's fit of the ACES film curve "
+                      "(2015); the sRGB curve follows",
+              .check = OneOf<std::string>{{"srgb", "aces"}}},
+             {.flags = "--spp",
+              .target = &o->spp,
+              .help = "Samples per pixel (default: the scene's sampleCount)",
+              .check = Range{1u, 0xffffffffu}},
+             {.flags = "--time",
+              .target = &o->time,
+              .help = "Stop after this much kernel time (30s, 2min); --spp is then the most",
+              .type = "TIME"},
+             {.flags = "--target-error",
+              .target = &o->target_error,
+              .help = "Stop when the relative standard error of the image's mean luminance is below this (1%)\n"
+                      "  A pilot of other samples decides how many, so that the image stays unbiased",
+              .type = "ERROR",
+              .excludes = "--time"},
+             {.flags = "--time-limit",
+              .target = &o->time_limit,
+              .help = "Stop rendering this long after the start of the process, by the wall clock: loading and "
+                      "compiling count, writing comes after; --spp is then the most",
+              .type = "TIME",
+              .excludes = "--target-error"},
+             {.flags = "--strategy",
+              .target = &o->strategy,
+              .help = "auto: short pilots find which way to sample light costs least on this scene and device",
+              .check = OneOf<std::string>{{"auto"}}},
+             {.flags = "--width",
+              .target = &o->width,
+              .help = "Pixels (default: the scene's; one of both keeps its aspect)",
+              .check = Range{1, 65535}},
+             {.flags = "--height",
+              .target = &o->height,
+              .help = "Pixels (default: the scene's)",
+              .check = Range{1, 65535}},
+             crop_row(o->crop),
+             {.flags = "--seed",
+              .target = &o->seed,
+              .help = "Of the random numbers; the same seed gives the same image"},
+             {.flags = "--json", .target = &o->json, .help = "File for the statistics of the render"},
+             {.flags = "--layers",
+              .target = &o->layers,
+              .help = "More layers for the EXR: variance (of each pixel's mean)",
+              .check = OneOf<std::string>{{"variance"}}},
+             {.flags = "--quiet", .target = &o->quiet, .help = "Print nothing but warnings and errors"},
+             {.flags = "--verbose",
+              .target = &o->verbose,
+              .help = "Print what the driver remarks on the kernels, too",
+              .excludes = "--quiet"}}),
+        .run = [o] { return run(*o); }};
 }
 
 } // namespace opal

@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "commands/commands.h"
 #include "commands/options.h"
+#include "image/metrics.h"
 #include "plot/svg.h"
 #include "render/report.h"
 #include "scene/options.h"
@@ -34,7 +35,7 @@ struct Options {
     std::vector<unsigned> spp = {4, 16, 64};
     unsigned replicates = 5, seed = 0, reference_spp = 0, width = 0;
     std::vector<std::string> devices;
-    std::string reference, budget, out, clock = "kernel";
+    std::string reference, crop, budget, out, clock = "kernel";
     bool quiet = false;
 };
 
@@ -60,17 +61,20 @@ void check_numbers(const Options &o) {
 
 Image read_reference(const std::string &file, const SceneDescription &scene) {
     Image image = read_exr(file);
-    if (image.width != scene.camera.width || image.height != scene.camera.height)
-        throw Error(fmt::format("--reference {}: has {} x {} pixels, the scene {} x {}", file, image.width,
-                                image.height, scene.camera.width, scene.camera.height));
+    const Crop part = scene.camera.window(), place = image.place();
+    if (place != part && place != Crop{0, 0, part.of_width, part.of_height, part.of_width, part.of_height})
+        throw Error(fmt::format("--reference {}: has {} pixels, the scene {}", file, text_of(place), text_of(part)));
+    image = cropped(image, part);
     for (const char *channel : {"R", "G", "B"})
         if (!image.find(channel))
             throw Error(fmt::format("--reference {}: has no layer {}, which a render has", file, channel));
     if (const double empty = image.number("opal.empty_pixels"))
         throw Error(fmt::format("--reference {}: {} of its pixels have no sample", file, empty));
-    const auto of = image.metadata.find("opal.scene");
-    if (of != image.metadata.end() && std::filesystem::path(of->second).filename() != scene.file.filename())
-        throw Error(fmt::format("--reference {}: is an image of {}, not of {}", file, of->second, scene.file.string()));
+    if (const size_t invalid = invalid_pixels(image).count)
+        throw Error(fmt::format("--reference {}: {} of its pixels are NaN or infinite", file, invalid));
+    const std::string of = image.text("opal.scene");
+    if (!of.empty() && std::filesystem::path(of).filename() != scene.file.filename())
+        throw Error(fmt::format("--reference {}: is an image of {}, not of {}", file, of, scene.file.string()));
     return image;
 }
 
@@ -86,6 +90,7 @@ SweepRecord fresh_record(const Options &o, const SceneDescription &scene, const 
     r.clock = o.clock;
     r.width = scene.camera.width;
     r.height = scene.camera.height;
+    r.crop = scene.camera.crop == Crop{} ? "" : text_of(scene.camera.crop);
     r.command = command_line();
     r.integrator = integrator_name(scene);
     r.replicates = o.replicates;
@@ -94,15 +99,6 @@ SweepRecord fresh_record(const Options &o, const SceneDescription &scene, const 
     r.spp.erase(std::unique(r.spp.begin(), r.spp.end()), r.spp.end());
     r.budget = o.budget.empty() ? 0 : parse_seconds(o.budget);
     return r;
-}
-
-std::filesystem::path make_folder(const Options &o, const SceneDescription &scene) {
-    std::filesystem::path folder = o.out.empty() ? scene.file.stem().string() + "_sweep" : o.out;
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error)
-        throw Error(fmt::format("-o {}: no folder can be made there: {}", folder.string(), error.message()));
-    return folder;
 }
 
 std::vector<DevicePick> pick_devices(const Options &o) {
@@ -195,6 +191,7 @@ int run(const Options &o) {
     check_numbers(o);
     SceneDescription scene = load_scene(o.scene);
     set_size(scene.camera, o.width, 0);
+    set_crop(scene.camera, o.crop);
     const std::vector<Candidate> strategies = parse_strategies(scene, o.strategies, o.math);
     const Sources sources = load_sources(o.scene.cl_dir);
     SweepPlan plan{.folder = {},
@@ -210,7 +207,8 @@ int run(const Options &o) {
     const std::vector<DevicePick> devices = pick_devices(o);
     const std::vector<Candidate> candidates = cross(strategies, devices);
     const SweepRecord fresh = fresh_record(o, scene, devices);
-    plan.folder = make_folder(o, scene);
+    plan.folder = o.out.empty() ? scene.file.stem().string() + "_sweep" : o.out;
+    make_folder(plan.folder);
     SweepRecord record = resume(plan.folder, fresh);
     for (const Candidate &c : candidates) // all rows at once, as references to them are kept
         record.strategy(c.name, c.label).device = c.device;
@@ -287,6 +285,7 @@ Command sweep_command() {
               .target = &o->width,
               .help = "Pixels; keeps the aspect (default: the scene's)",
               .check = Range{1, 65535}},
+             crop_row(o->crop),
              {.flags = "-o,--output",
               .target = &o->out,
               .help = "Folder; a sweep that is there already goes on [SCENE_sweep]",

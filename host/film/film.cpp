@@ -53,6 +53,7 @@ Image image_of(const Film &film, bool variance) {
     Image image;
     image.width = film.width;
     image.height = film.height;
+    image.crop = film.crop;
     const size_t pixels = film.sum.size();
     const char *names[] = {"R", "G", "B"};
     for (int c = 0; c < 3; c++) {

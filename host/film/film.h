@@ -8,7 +8,7 @@
 
 namespace opal {
 
-// A sample that was NaN or infinite: its pixel and its index.
+// A sample that was NaN or infinite: its pixel in the whole image, and its index.
 struct InvalidSample {
     unsigned x, y, sample;
 };
@@ -20,8 +20,9 @@ struct Film {
     std::vector<std::array<double, 4>> squares;  // of R^2, G^2, B^2, luminance^2
     std::vector<std::array<double, 4>> weighted; // of w R, w G, w B, w; empty for the box filter
     std::vector<unsigned> count;                 // of valid samples
-    unsigned long long invalid = 0;              // number of samples left out because they were NaN or infinite
+    unsigned long long invalid = 0;              // samples left out as NaN or infinite, those around a crop included
     std::vector<InvalidSample> invalid_places;   // the first few of them
+    Crop crop{};                                 // the part of the image; all 0: the whole
 };
 
 // The image's mean and its standard error. Each pixel is a stratum, so that the error measures noise, not content: it

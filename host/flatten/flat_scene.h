@@ -1,6 +1,7 @@
 // A scene as the device sees it: arrays of shared records, and the features that its kernel needs.
 #pragma once
 
+#include "base/crop.h"
 #include "base/math.h"
 #include "emitters/list.h"
 #include "kernels/features.h"
@@ -37,6 +38,7 @@ struct FlatScene {
     double scale = 1;
 
     Settings settings{};
+    Crop crop; // what is shown of the image: settings.film less what the filter needs around it
 #define OPAL_TABLE_ROWS(record, name, shown) std::vector<record> name;
     OPAL_TABLES(OPAL_TABLE_ROWS)
 #undef OPAL_TABLE_ROWS

@@ -9,10 +9,20 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <map>
 
 namespace opal {
 namespace {
+
+// The crop, and around it the pixels within reach of the filter, as far as the image goes.
+PixelWindow film_window(const Crop &crop, const Settings &settings) {
+    const int reach = std::max(0, int(std::ceil(settings.filter_radius - 0.5f)));
+    const int left = std::max(0, crop.x - reach), top = std::max(0, crop.y - reach);
+    const int right = std::min(crop.of_width, crop.x + crop.width + reach),
+              bottom = std::min(crop.of_height, crop.y + crop.height + reach);
+    return {uint(left), uint(top), uint(right - left), uint(bottom - top)};
+}
 
 void fill_film(const Camera &camera, Settings &settings) {
     settings.width = uint(camera.width);
@@ -22,6 +32,7 @@ void fill_film(const Camera &camera, Settings &settings) {
     settings.filter_stddev = float(camera.filter.stddev);
     settings.filter_b = float(camera.filter.b);
     settings.filter_c = float(camera.filter.c);
+    settings.film = film_window(camera.window(), settings);
 }
 
 void fill_strategy(const SceneDescription &description, const Flattening &flattening, Settings &settings) {
@@ -134,6 +145,7 @@ FlatScene flatten(const SceneDescription &description, int lanes) {
     scene.center = flattening.center;
     scene.scale = flattening.scale;
     scene.cameras.push_back(flatten_camera(description.camera, flattening));
+    scene.crop = description.camera.window();
     fill_film(description.camera, scene.settings);
     fill_strategy(description, flattening, scene.settings);
     gather_bsdfs(description, scene);

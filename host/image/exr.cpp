@@ -1,20 +1,29 @@
 #include "image/image.h"
 
 #include "base/error.h"
+#include "base/json.h"
+#include "base/log.h"
 #include "base/read_file.h"
 
 #include <ImfChannelList.h>
+#include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
-#include <ImfInputFile.h>
+#include <ImfInputPart.h>
+#include <ImfIntAttribute.h>
+#include <ImfMultiPartInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cerrno>
 #include <new>
+#include <optional>
 #include <stdexcept>
 
 namespace opal {
@@ -69,27 +78,93 @@ Imf::Slice slice_of(const float *values, int width, const Imath::Box2i &window) 
                       sizeof(float) * size_t(width));
 }
 
-std::string exr_bytes(const Image &image) {
-    Imf::Header header(image.width, image.height);
-    Imf::FrameBuffer frame;
-    for (const Layer &layer : image.layers) {
-        if (layer.values.size() != size_t(image.width) * size_t(image.height))
-            throw std::logic_error("layer " + layer.name + " is not of the image's size");
-        header.channels().insert(layer.name, Imf::Channel(Imf::FLOAT));
-        frame.insert(layer.name, slice_of(layer.values.data(), image.width, header.dataWindow()));
-    }
-    for (const auto &[name, text] : image.metadata)
-        header.insert(name, Imf::StringAttribute(text));
-    MemoryOutput stream;
-    {
-        Imf::OutputFile file(stream, header);
-        file.setFrameBuffer(frame);
-        file.writePixels(image.height);
-    } // the destructor writes the table of line offsets
-    return stream.bytes();
+constexpr std::array channel_names = {"R", "G", "B"};
+constexpr const char *crop_attribute = "opal.crop";
+
+bool has_rgb(const Imf::Header &header, const std::string &layer = "") {
+    return std::ranges::all_of(
+        channel_names, [&](const char *name) { return header.channels().findChannel(layer + name) != nullptr; });
 }
 
-Image read_pixels(Imf::InputFile &file) {
+// The part that holds the picture.
+int picture_part(const Imf::MultiPartInputFile &file) {
+    const auto named = [&](const char *name) -> std::optional<int> {
+        for (int part = 0; part < file.parts(); part++)
+            if (file.header(part).hasName() && file.header(part).name() == name)
+                return part;
+        return {};
+    };
+    for (const char *name : {"rgb", "beauty", "Combined"})
+        if (const auto part = named(name))
+            return *part;
+    for (int part = 0; part < file.parts(); part++)
+        if (has_rgb(file.header(part)))
+            return part;
+    return 0;
+}
+
+// Gives the picture's channels the names R, G, B, where it has others.
+void name_channels(const std::filesystem::path &file, Image &image) {
+    if (image.find("R"))
+        return;
+    const auto rename = [&](const std::array<std::string, 3> &from) {
+        for (const std::string &name : from)
+            if (!image.find(name))
+                return false;
+        for (size_t c = 0; c < from.size(); c++)
+            for (Layer &layer : image.layers)
+                if (layer.name == from[c])
+                    layer.name = channel_names[c];
+        note(fmt::format("{}: takes the channels {} for R, G, B", file.string(), fmt::join(from, ", ")));
+        return true;
+    };
+    if (rename({"r", "g", "b"}))
+        return;
+    for (const Layer &layer : image.layers)
+        if (layer.name.ends_with(".Combined.R")) {
+            const std::string stem = layer.name.substr(0, layer.name.size() - 1);
+            rename({stem + "R", stem + "G", stem + "B"});
+            return;
+        }
+    if (const Layer *grey = image.find("Y"); grey && !image.find("RY")) {
+        const std::vector<float> values = grey->values;
+        std::erase_if(image.layers, [](const Layer &layer) { return layer.name == "Y"; });
+        for (const char *name : channel_names)
+            image.layers.push_back({name, values});
+        note(fmt::format("{}: takes the channel Y for R, G and B", file.string()));
+    }
+}
+
+// The place that the file states: by opal.crop, or by a data window that is not the display window.
+Crop stated_crop(const Imf::Header &header, const Image &image) {
+    if (const std::string text = image.text(crop_attribute); !text.empty()) {
+        const nlohmann::json j = parse_json(text);
+        const Crop crop{j.at("x"), j.at("y"), j.at("width"), j.at("height"), j.at("of_width"), j.at("of_height")};
+        if (crop.width != image.width || crop.height != image.height)
+            throw Error(fmt::format("its attribute {} is not of the image's size: {}", crop_attribute, text));
+        return crop;
+    }
+    const Imath::Box2i &data = header.dataWindow(), &display = header.displayWindow();
+    if (data == display)
+        return {};
+    return {data.min.x - display.min.x,        data.min.y - display.min.y,       image.width, image.height,
+            display.max.x - display.min.x + 1, display.max.y - display.min.y + 1};
+}
+
+void read_attributes(const Imf::Header &header, Image &image) {
+    for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
+        const Imf::Attribute *value = &attribute.attribute();
+        if (const auto *text = dynamic_cast<const Imf::StringAttribute *>(value))
+            image.metadata[attribute.name()] = text->value();
+        else if (const auto *whole = dynamic_cast<const Imf::IntAttribute *>(value))
+            image.metadata[attribute.name()] = whole->value();
+        else if (const auto *number = dynamic_cast<const Imf::FloatAttribute *>(value))
+            image.metadata[attribute.name()] = number->value();
+    }
+}
+
+Image read_pixels(Imf::MultiPartInputFile &parts, int part) {
+    Imf::InputPart file(parts, part);
     const Imf::Header &header = file.header();
     const Imath::Box2i window = header.dataWindow();
     Image image;
@@ -105,10 +180,33 @@ Image read_pixels(Imf::InputFile &file) {
         frame.insert(layer.name, slice_of(layer.values.data(), image.width, window));
     file.setFrameBuffer(frame);
     file.readPixels(window.min.y, window.max.y);
-    for (auto attribute = header.begin(); attribute != header.end(); ++attribute)
-        if (const auto *text = dynamic_cast<const Imf::StringAttribute *>(&attribute.attribute()))
-            image.metadata[attribute.name()] = text->value();
+    read_attributes(header, image);
+    image.crop = stated_crop(header, image);
+    image.metadata.erase(crop_attribute); // Image::crop has it
     return image;
+}
+
+Imf::Header header_of(const Image &image) {
+    Imf::Header header(image.width, image.height);
+    header.compression() = Imf::ZIPS_COMPRESSION;
+    Imf::addChromaticities(header, Imf::Chromaticities()); // the default: Rec. 709 with white D65
+    header.insert("colorInteropID", Imf::StringAttribute("lin_rec709_scene"));
+    header.insert("software", Imf::StringAttribute("Opal " OPAL_VERSION));
+    for (const auto &[name, value] : image.metadata)
+        if (const auto *text = std::get_if<std::string>(&value))
+            header.insert(name, Imf::StringAttribute(*text));
+        else if (const auto *whole = std::get_if<int>(&value))
+            header.insert(name, Imf::IntAttribute(*whole));
+        else
+            header.insert(name, Imf::FloatAttribute(std::get<float>(value)));
+    if (const Crop &crop = image.crop; crop != Crop{})
+        header.insert(crop_attribute, Imf::StringAttribute(dump(json_of(crop))));
+    for (const Layer &layer : image.layers) {
+        if (layer.name.size() > 1 && std::string("abgry").find(char(std::tolower(layer.name[0]))) != std::string::npos)
+            throw std::logic_error("layer " + layer.name + " begins with a letter that readers take for a channel");
+        header.channels().insert(layer.name, Imf::Channel(Imf::FLOAT));
+    }
+    return header;
 }
 
 } // namespace
@@ -116,15 +214,47 @@ Image read_pixels(Imf::InputFile &file) {
 Image read_exr(const std::filesystem::path &file) {
     MemoryInput stream(file, read_file(file));
     try {
-        Imf::InputFile input(stream);
-        if (!input.isComplete())
+        Imf::MultiPartInputFile input(stream);
+        const int part = picture_part(input);
+        if (!input.partComplete(part))
             throw Error("the file is incomplete");
-        return read_pixels(input);
+        Image image = read_pixels(input, part);
+        if (input.parts() > 1)
+            note(fmt::format("{}: has {} parts; takes {}", file.string(), input.parts(),
+                             input.header(part).hasName() ? input.header(part).name() : "the first"));
+        name_channels(file, image);
+        return image;
     } catch (const std::bad_alloc &) {
         cannot_read(file, ENOMEM);
     } catch (const std::exception &error) {
         throw Error(fmt::format("{}: cannot be read as OpenEXR: {}", file.string(), error.what()));
     }
+}
+
+nlohmann::json json_of(const Crop &crop) {
+    return object({{"x", crop.x},
+                   {"y", crop.y},
+                   {"width", crop.width},
+                   {"height", crop.height},
+                   {"of_width", crop.of_width},
+                   {"of_height", crop.of_height}});
+}
+
+std::string exr_bytes(const Image &image) {
+    const Imf::Header header = header_of(image);
+    Imf::FrameBuffer frame;
+    for (const Layer &layer : image.layers) {
+        if (layer.values.size() != size_t(image.width) * size_t(image.height))
+            throw std::logic_error("layer " + layer.name + " is not of the image's size");
+        frame.insert(layer.name, slice_of(layer.values.data(), image.width, header.dataWindow()));
+    }
+    MemoryOutput stream;
+    {
+        Imf::OutputFile file(stream, header);
+        file.setFrameBuffer(frame);
+        file.writePixels(image.height);
+    } // the destructor writes the table of line offsets
+    return stream.bytes();
 }
 
 void write_exr(const Image &image, const std::filesystem::path &file) { write_safely(file, exr_bytes(image)); }

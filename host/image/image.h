@@ -1,10 +1,15 @@
 // Images of named float layers, and their files.
 #pragma once
 
+#include "base/crop.h"
+
 #include <filesystem>
 #include <map>
 #include <string>
+#include <variant>
 #include <vector>
+
+#include <nlohmann/json_fwd.hpp>
 
 namespace opal {
 
@@ -13,22 +18,52 @@ struct Layer {
     std::vector<float> values; // width * height, top row first
 };
 
+using Attribute = std::variant<std::string, int, float>;
+
 struct Image {
     int width = 0, height = 0;
     std::vector<Layer> layers;
-    std::map<std::string, std::string> metadata; // string attributes of the EXR header
+    std::map<std::string, Attribute> metadata; // attributes of the EXR header
+    Crop crop{};                               // all 0: the whole image
 
-    const Layer *find(const std::string &name) const;  // nullptr where there is none
-    const Layer &get(const std::string &name) const;   // Error that lists the layers
-    double number(const std::string &attribute) const; // from the metadata; 0 if it is missing or no number
+    const Layer *find(const std::string &name) const;     // nullptr where there is none
+    const Layer &get(const std::string &name) const;      // Error that lists the layers
+    double number(const std::string &attribute) const;    // from the metadata; 0 if it is missing or no number
+    std::string text(const std::string &attribute) const; // from the metadata; empty if it is missing
+    Crop place() const;                                   // crop, or that of the whole image
 };
 
-Image read_exr(const std::filesystem::path &file);                     // reads every float and half channel
-void write_exr(const Image &image, const std::filesystem::path &file); // float32; by write_safely
-// Writes R, G, B with the exact sRGB curve (IEC 61966-2-1), clamped and rounded to 8 bits. Pixels that are not finite
-// become magenta.
-void write_png(const Image &image, const std::filesystem::path &file);
+nlohmann::json json_of(const Crop &crop);
+std::string text_of(const Crop &crop);               // "32 x 24", of a part: "8 x 8 at (16, 8) of 32 x 24"
+Image cropped(const Image &image, const Crop &part); // the part, which the image must hold
+
+// Reads every float and half channel of the part that holds the picture: of several parts the one named rgb, beauty or
+// Combined, else the first with R, G, B. Channels r g b, Y alone and *.Combined.R, .G, .B become R, G, B. Notes tell
+// what was chosen. A data window within a larger display window is a crop, as the attribute opal.crop is.
+Image read_exr(const std::filesystem::path &file);
+
+// Writes the form that most programs read right (measured): one part of scanlines, float32, ZIPS, both windows from
+// (0, 0), colour space and chromaticities (Rec. 709) as attributes. Names of layers ("variance.R") must not begin with
+// a, b, g, r or y, which ImageMagick 7 takes for alpha, blue, green and red. By write_safely.
+void write_exr(const Image &image, const std::filesystem::path &file);
+std::string exr_bytes(const Image &image); // the file that write_exr writes
+
+// How a linear value is shown: it is multiplied by 2^exposure, then mapped, then clamped to 0 to 1 and sRGB-encoded.
+enum class Tonemap {
+    srgb, // as it is
+    aces  // the ACES film curve: x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14), the fit of Narkowicz, 2015
+};
+struct Display {
+    double exposure = 0; // EV
+    Tonemap tonemap = Tonemap::srgb;
+};
+
+// Writes R, G, B as sRGB (IEC 61966-2-1), rounded to 8 bits. Pixels that are not finite become magenta.
+void write_png(const Image &image, const std::filesystem::path &file, const Display &display = {});
 double srgb_encode(double linear); // of a linear value, clamped to 0 to 1
+
+// Makes a folder, and those above it, unless it is there. Throws Error with the reason of the system.
+void make_folder(const std::filesystem::path &folder);
 
 // Error unless write_safely could write this file. Call it before rendering, not after.
 void check_writable(const std::filesystem::path &file);

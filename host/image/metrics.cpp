@@ -44,6 +44,17 @@ double ratio(double a, double b) { return b > 0 ? a / b : 0; }
 
 } // namespace
 
+InvalidPixels invalid_pixels(const Image &image) {
+    const Pixels values(image);
+    InvalidPixels invalid;
+    for (size_t i = 0; i < values.size(); ++i)
+        if (!is_finite(values[i]) && invalid.count++ == 0) {
+            invalid.x = static_cast<int>(i % size_t(image.width));
+            invalid.y = static_cast<int>(i / size_t(image.width));
+        }
+    return invalid;
+}
+
 Metrics compare_images(const Image &image, const Image &reference) {
     if (image.width != reference.width || image.height != reference.height)
         throw Error(fmt::format("images of different sizes cannot be compared: {} x {} and {} x {} pixels", image.width,

@@ -20,6 +20,13 @@ struct Metrics {
     size_t invalid = 0;         // pixels where either is not finite: left out of all the above
 };
 
+// Pixels whose R, G or B is NaN or infinite: how many, and the first.
+struct InvalidPixels {
+    size_t count = 0;
+    int x = 0, y = 0;
+};
+InvalidPixels invalid_pixels(const Image &image);
+
 // Throws Error where the sizes differ or a layer R, G or B is missing.
 Metrics compare_images(const Image &image, const Image &reference);
 

@@ -68,6 +68,13 @@ void check_folder(const fs::path &file) {
 
 } // namespace
 
+void make_folder(const fs::path &folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error)
+        throw Error(fmt::format("{}: no folder can be made there: {}", folder.string(), error.message()));
+}
+
 void check_writable(const fs::path &file) {
     const fs::path target = target_of(file);
     check_folder(target);

@@ -17,7 +17,7 @@ RenderedFilm render_film(const Device &device, const FlatScene &scene, const Ren
     renderer.restart(seed);
     watch_interrupts();
     const unsigned most = spp ? spp : most_samples;
-    const double pixels = double(scene.settings.width) * scene.settings.height;
+    const double pixels = double(scene.settings.film.width) * scene.settings.film.height;
     const double start = seconds_since_start();
     RenderedFilm rendered;
     {

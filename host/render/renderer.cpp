@@ -54,7 +54,7 @@ Renderer::LaunchShape Renderer::launch_shape() const {
     LaunchShape s{};
     s.tile_width = s.tile_height = gpu ? gpu_tile_side : cpu_tile_side;
     s.local_size = unsigned(group_size(device_.info));
-    s.tiles = ceil_div(settings_.width, s.tile_width) * ceil_div(settings_.height, s.tile_height);
+    s.tiles = ceil_div(settings_.film.width, s.tile_width) * ceil_div(settings_.film.height, s.tile_height);
     const unsigned wanted_items = gpu ? gpu_items : cpu_items_a_core * std::max(1u, device_.info.compute_units);
     s.chunks = std::clamp(wanted_items / s.tiles, 1u, max_chunks);
     const unsigned max_items = gpu ? max_gpu_items_a_launch : max_cpu_items_a_launch;
@@ -63,9 +63,9 @@ Renderer::LaunchShape Renderer::launch_shape() const {
 }
 
 Renderer::Renderer(const Device &device, const FlatScene &scene, const RenderOptions &options)
-    : device_(device), settings_(scene.settings), options_(options),
-      pixels_(size_t(scene.settings.width) * scene.settings.height), wide_filter_(scene.features[FEATURE_wide_filter]),
-      on_device_(std::make_unique<OnDevice>()) {
+    : device_(device), settings_(scene.settings), crop_(scene.crop), options_(options),
+      pixels_(size_t(scene.settings.film.width) * scene.settings.film.height),
+      wide_filter_(scene.features[FEATURE_wide_filter]), on_device_(std::make_unique<OnDevice>()) {
     shape_ = launch_shape();
     const unsigned long long bytes =
         std::min({max_sample_buffer_bytes, device.info.max_allocation, sample_bytes * max_buffer_samples});
@@ -202,32 +202,47 @@ bool Renderer::render(unsigned end, const OnLaunch &on_launch) {
     });
 }
 
+// The pixels of the device's film that the image shows: the film is larger by what wide filters need around a crop.
+std::vector<size_t> Renderer::crop_pixels() const {
+    const PixelWindow &film = settings_.film;
+    std::vector<size_t> pixels;
+    for (unsigned y = unsigned(crop_.y) - film.top; y < unsigned(crop_.y + crop_.height) - film.top; y++)
+        for (unsigned x = unsigned(crop_.x) - film.left; x < unsigned(crop_.x + crop_.width) - film.left; x++)
+            pixels.push_back(size_t(y) * film.width + x);
+    return pixels;
+}
+
 Film Renderer::film() const {
+    const std::vector<size_t> shown = crop_pixels();
     Film film;
-    film.width = int(settings_.width);
-    film.height = int(settings_.height);
-    film.count = read_buffer<cl_uint>(device_, on_device_->counts, pixels_);
+    film.width = crop_.width;
+    film.height = crop_.height;
+    film.crop = crop_.is_whole() ? Crop{} : crop_;
+    const std::vector<cl_uint> counts = read_buffer<cl_uint>(device_, on_device_->counts, pixels_);
     const std::vector<float> planes = read_buffer<float>(device_, on_device_->film, pixels_ * FILM_PLANES);
     const auto value = [&](unsigned plane, unsigned low, size_t pixel) { // hi + lo
         return double(planes[plane * pixels_ + pixel]) + double(planes[low * pixels_ + pixel]);
     };
-    film.sum.resize(pixels_);
-    film.squares.resize(pixels_);
-    film.weighted.resize(wide_filter_ ? pixels_ : 0);
-    for (size_t p = 0; p < pixels_; p++) {
+    film.sum.resize(shown.size());
+    film.squares.resize(shown.size());
+    film.weighted.resize(wide_filter_ ? shown.size() : 0);
+    film.count.resize(shown.size());
+    for (size_t p = 0; p < shown.size(); p++) {
+        film.count[p] = counts[shown[p]];
         for (unsigned c = 0; c < 3; c++)
-            film.sum[p][c] = value(FILM_SUM + c, FILM_SUM_LOW + c, p);
+            film.sum[p][c] = value(FILM_SUM + c, FILM_SUM_LOW + c, shown[p]);
         for (unsigned c = 0; c < 4; c++)
-            film.squares[p][c] = value(FILM_SQUARES + c, FILM_SQUARES_LOW + c, p);
+            film.squares[p][c] = value(FILM_SQUARES + c, FILM_SQUARES_LOW + c, shown[p]);
         for (unsigned c = 0; wide_filter_ && c < 4; c++)
-            film.weighted[p][c] = value(FILM_WEIGHTED + c, FILM_WEIGHTED_LOW + c, p);
+            film.weighted[p][c] = value(FILM_WEIGHTED + c, FILM_WEIGHTED_LOW + c, shown[p]);
     }
     const std::vector<cl_uint> invalid =
         read_buffer<cl_uint>(device_, on_device_->invalid, 1 + 2 * OPAL_INVALID_RECORDS);
     film.invalid = invalid[0];
     for (unsigned i = 0; i < std::min<unsigned>(invalid[0], OPAL_INVALID_RECORDS); i++)
-        film.invalid_places.push_back(
-            {invalid[1 + 2 * i] % settings_.width, invalid[1 + 2 * i] / settings_.width, invalid[2 + 2 * i]});
+        film.invalid_places.push_back({settings_.film.left + invalid[1 + 2 * i] % settings_.film.width,
+                                       settings_.film.top + invalid[1 + 2 * i] / settings_.film.width,
+                                       invalid[2 + 2 * i]});
     return film;
 }
 

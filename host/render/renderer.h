@@ -62,12 +62,14 @@ private:
     void set_pass_arguments(cl::Kernel &kernel, unsigned first_argument, unsigned chunk_samples, unsigned pass_samples);
     double launch(const cl::Kernel &kernel, unsigned items);
     unsigned next_pass_samples(unsigned left) const;
+    std::vector<size_t> crop_pixels() const;
 
     const Device device_; // a copy of handles to the same device
     Settings settings_;
+    Crop crop_;
     RenderOptions options_;
     LaunchShape shape_{};
-    size_t pixels_ = 0;
+    size_t pixels_ = 0; // of the device's film
     bool wide_filter_ = false;
     std::unique_ptr<OnDevice> on_device_;
     unsigned next_sample_ = 0;

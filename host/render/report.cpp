@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 namespace opal {
 
@@ -19,6 +20,17 @@ namespace {
 
 double samples_per_second(const FilmStatistics &s, const RenderSeconds &seconds) {
     return seconds.render > 0 ? double(s.samples + s.invalid) / seconds.render : 0;
+}
+
+// A number as a number where the attribute holds it: a seed of more than 31 bits stays exact as text.
+Attribute attribute_of(const json &value) {
+    if (value.is_string())
+        return value.get<std::string>();
+    if (value.is_number_float())
+        return value.get<float>();
+    if (value.is_number_integer() && std::in_range<int>(value.get<long long>()))
+        return value.get<int>();
+    return dump(value);
 }
 
 } // namespace
@@ -62,6 +74,8 @@ nlohmann::json RenderReport::json() const {
     j["strategy"] = strategy_json(scene);
     j["width"] = film.width;
     j["height"] = film.height;
+    if (film.crop != Crop{})
+        j["crop"] = json_of(film.crop);
     j["spp"] = spp();
     j["seed"] = seed;
     j["mean_rgb"] = s.mean_rgb;
@@ -174,7 +188,8 @@ std::vector<std::string> film_warnings(const RenderReport &render) {
 
 void add_metadata(Image &image, const json &report, const std::string &command_line) {
     for (const auto &[key, value] : report.items())
-        image.metadata["opal." + key] = value.is_string() ? value.get<std::string>() : dump(value);
+        if (key != "crop") // write_exr notes Image::crop
+            image.metadata["opal." + key] = attribute_of(value);
     image.metadata["opal.command_line"] = command_line;
 }
 

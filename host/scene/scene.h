@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/color.h"
+#include "base/crop.h"
 #include "base/math.h"
 #include "cameras/list.h"
 #include "scene/emitters.h"
@@ -80,7 +81,10 @@ struct Camera {
     int width = 1280, height = 720;
     double near_clip = 1e-4, far_clip = 1e4; // planar, camera space
     Filter filter;
+    Crop crop{}; // --crop; all 0: the whole image
     SourcePlace place;
+
+    Crop window() const { return crop == Crop{} ? Crop{0, 0, width, height, width, height} : crop; }
 };
 std::string camera_text(const Camera &camera); // its kind and parameters: "perspective, fov 30"
 

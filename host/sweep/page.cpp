@@ -137,13 +137,14 @@ std::string devices_of(const SweepRecord &r) {
 std::string measurement_text(const SweepRecord &r) {
     const ReferenceRecord &ref = r.reference;
     std::string html = fmt::format(
-        "<p>{}, {} &times; {} pixels, on {}, by opal {}. Seconds are {}; compiling is not among them. "
+        "<p>{}, {} &times; {} pixels{}, on {}, by opal {}. Seconds are {}; compiling is not among them. "
         "Each point is the mean of {} renders with seeds of their own, made in rounds: one of every strategy, then the "
         "next, "
         "so that what disturbed the machine disturbed all. An interval holds the true value with 95 % confidence: "
         "Student's t on the logarithm for errors; for times and their ratios the bootstrap over the rounds, with the "
         "same draws for all strategies.</p>\n",
-        html_text(r.scene), r.width, r.height, html_text(devices_of(r)), r.version,
+        html_text(r.scene), r.width, r.height, r.crop.empty() ? "" : " (of these " + r.crop + ")",
+        html_text(devices_of(r)), r.version,
         r.clock == "cpu" ? "CPU seconds of all cores over their number, what the kernels take on a machine of their own"
                          : "the device's own kernel times",
         r.replicates);

@@ -60,7 +60,8 @@ struct SweepRecord {
     // A run that continues a sweep must agree in these.
     std::string version, scene, scene_hash, dialect, reference_file, clock; // clock: kernel or cpu
     std::vector<DeviceRecord> devices;
-    int width = 0, height = 0;
+    int width = 0, height = 0; // of the whole image
+    std::string crop;          // the part that is rendered, in words; empty: all
     // In these it may differ.
     std::string command, integrator;
     unsigned replicates = 0;

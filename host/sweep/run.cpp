@@ -178,6 +178,7 @@ private:
                        b = strategy.render(half, plan_.seed, first_reference_sample_b);
             const FilmStatistics sa = statistics_of(a.film), sb = statistics_of(b.film);
             reference_ = reference_from_halves(a.image, b.image);
+            reference_.crop = a.image.crop;
             reference_.metadata["opal.dialect"] = record_.dialect;
             write_exr(reference_, reference_file());
             r = {best_->name,

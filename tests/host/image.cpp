@@ -3,6 +3,14 @@
 #include "image/metrics.h"
 #include "support/scratch.h"
 
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfStandardAttributes.h>
 #include <catch2/catch.hpp>
 #include <png.h>
 
@@ -71,9 +79,85 @@ TEST_CASE("An EXR keeps every bit of every layer and its metadata", "[image]") {
     for (const Layer &layer : image.layers)
         CHECK(std::memcmp(read.get(layer.name).values.data(), layer.values.data(),
                           layer.values.size() * sizeof(float)) == 0);
-    for (const auto &[name, text] : image.metadata)
-        CHECK(read.metadata.at(name) == text);
+    for (const auto &[name, value] : image.metadata)
+        CHECK(read.metadata.at(name) == value);
     CHECK(files_in(folder.path()) == 1);
+}
+
+TEST_CASE("The header of an EXR has the form that most programs read right", "[image]") {
+    const ScratchFolder folder;
+    Image image = gradient(5, 40);
+    image.metadata = {{"whole", 7}, {"number", 0.5f}, {"text", "7"}};
+    image.crop = {3, 4, 5, 40, 20, 50};
+    write_exr(image, folder / "image.exr");
+    const Image read = read_exr(folder / "image.exr");
+    CHECK(read.metadata.at("whole") == Attribute(7));
+    CHECK(read.metadata.at("number") == Attribute(0.5f));
+    CHECK(read.metadata.at("text") == Attribute("7"));
+    CHECK(read.number("number") == 0.5);
+    CHECK(read.text("whole") == "7");
+    CHECK(read.crop == image.crop);
+    Imf::InputFile file((folder / "image.exr").c_str());
+    const Imf::Header &header = file.header();
+    CHECK(header.compression() == Imf::ZIPS_COMPRESSION);
+    CHECK(header.dataWindow() == Imath::Box2i({0, 0}, {4, 39}));
+    CHECK(header.displayWindow() == header.dataWindow());
+    CHECK(header.typedAttribute<Imf::StringAttribute>("colorInteropID").value() == "lin_rec709_scene");
+    CHECK(header.typedAttribute<Imf::StringAttribute>("software").value() == "Opal " OPAL_VERSION);
+    CHECK(Imf::chromaticities(header).red == Imath::V2f(0.64f, 0.33f));
+    image.layers.push_back(image.layers[0]);
+    image.layers.back().name = "albedo.R";
+    CHECK_THROWS_AS(write_exr(image, folder / "image.exr"), std::logic_error);
+}
+
+TEST_CASE("The picture is found in files of other programs", "[image]") {
+    const ScratchFolder folder;
+    const auto read_as = [&](const std::vector<std::string> &names) {
+        Image image = gradient(3, 2);
+        image.layers.resize(names.size());
+        for (size_t i = 0; i < names.size(); i++)
+            image.layers[i].name = names[i];
+        write_exr(image, folder / "image.exr");
+        return read_exr(folder / "image.exr");
+    };
+    const Image plain = gradient(3, 2);
+    for (const auto &names : {std::vector<std::string>{"R", "G", "B", "A"},
+                              {"r", "g", "b"},
+                              {"ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"}}) {
+        const Image read = read_as(names);
+        for (const char *name : {"R", "G", "B"})
+            CHECK(read.get(name).values == plain.get(name).values);
+    }
+    const Image grey = read_as({"Y"});
+    for (const char *name : {"R", "G", "B"})
+        CHECK(grey.get(name).values == plain.get("R").values);
+    CHECK_FALSE(read_as({"Z"}).find("R"));
+
+    // Two parts, the picture second; and a data window within the display window.
+    std::vector<Imf::Header> headers(2, Imf::Header(Imath::Box2i({0, 0}, {9, 9}), Imath::Box2i({4, 5}, {6, 6})));
+    std::vector<float> values(6, 2.5f);
+    for (Imf::Header &header : headers) {
+        const bool picture = &header == &headers[1];
+        header.setType(Imf::SCANLINEIMAGE);
+        header.setName(picture ? "Combined" : "variance");
+        for (const char *name : {"R", "G", "B"})
+            header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    }
+    {
+        Imf::MultiPartOutputFile file((folder / "parts.exr").c_str(), headers.data(), 2);
+        for (int part = 0; part < 2; part++) {
+            Imf::FrameBuffer frame;
+            std::fill(values.begin(), values.end(), part ? 2.5f : 0.f);
+            for (const char *name : {"R", "G", "B"})
+                frame.insert(name, Imf::Slice::Make(Imf::FLOAT, values.data(), headers[0].dataWindow()));
+            Imf::OutputPart output(file, part);
+            output.setFrameBuffer(frame);
+            output.writePixels(2);
+        }
+    }
+    const Image read = read_exr(folder / "parts.exr");
+    CHECK(read.get("G").values == std::vector<float>(6, 2.5f));
+    CHECK(read.crop == Crop{4, 5, 3, 2, 10, 10});
 }
 
 TEST_CASE("A file that is no EXR, or only a part of one, is refused by name", "[image]") {
@@ -106,6 +190,23 @@ TEST_CASE("A PNG has the exact sRGB curve, rounded, and magenta for what is not 
     }
     CHECK(red == std::vector<int>{0, 0, 10, 118, 188, 255, 255, 255});
     CHECK(green == std::vector<int>{0, 0, 10, 118, 188, 255, 255, 0});
+}
+
+TEST_CASE("Exposure and tone mapping come before the sRGB curve", "[image]") {
+    const ScratchFolder folder;
+    png_image header;
+    const auto red_of = [&](const Display &display) {
+        write_png(grey({0, 0.045f, 0.25f, 1, -1, std::numeric_limits<float>::max()}), folder / "image.png", display);
+        const std::vector<png_byte> bytes = read_png(folder / "image.png", header);
+        std::vector<int> red;
+        for (size_t i = 0; i < 6; ++i)
+            red.push_back(bytes[3 * i]);
+        return red;
+    };
+    // +2 EV: 0.18 -> 118 as without exposure, and 1.
+    CHECK(red_of({.exposure = 2}) == std::vector<int>{0, 118, 255, 255, 0, 255});
+    // 0.18 -> 0.26690, and 1 -> 0.80380, by the formula; -> 0.55346 and 0.90823 by the sRGB curve.
+    CHECK(red_of({.exposure = 2, .tonemap = Tonemap::aces}) == std::vector<int>{0, 141, 232, 252, 0, 255});
 }
 
 TEST_CASE("The sRGB curve joins its two pieces", "[image]") {

@@ -100,15 +100,64 @@ TEST_CASE("An image without variance is compared, and the missing test is told",
     CHECK(folder.json("plain.exr plain.exr")["psnr_db"].is_null()); // equal: infinite
 }
 
+TEST_CASE("A layer or an alpha more is noted, and the figures are those of R, G, B", "[compare]") {
+    const ImageFolder folder;
+    Image more = noisy(1, 1);
+    for (const char *name : {"depth", "A"})
+        more.layers.push_back({name, std::vector<float>(32 * 24)});
+    folder.put("a.exr", noisy(1, 2));
+    folder.put("b.exr", noisy(1, 1));
+    folder.put("more.exr", more);
+    const Outcome outcome = folder.compare("a.exr more.exr");
+    CHECK(outcome.exit_code == 0);
+    CHECK_THAT(outcome.err,
+               Catch::Contains("note: more.exr: holds A, depth, which a.exr has not and which is left out"));
+    CHECK(outcome.out == folder.compare("a.exr b.exr").out);
+    CHECK(folder.compare("more.exr a.exr").exit_code == 0);
+}
+
+TEST_CASE("Pixels that are not finite never pass for equal", "[compare]") {
+    const ImageFolder folder;
+    Image broken = noisy(1, 1), rough = noisy(1, 1);
+    broken.layers[1].values[5 * 32 + 7] = NAN;
+    broken.layers[2].values[9 * 32 + 7] = INFINITY;
+    rough.layers[4].values[3] = NAN; // of a variance
+    folder.put("a.exr", noisy(1, 1));
+    folder.put("broken.exr", broken);
+    folder.put("rough.exr", rough);
+    for (const char *pair : {"a.exr broken.exr", "broken.exr a.exr", "broken.exr broken.exr"}) {
+        const Outcome outcome = folder.compare(std::string(pair) + " --json out.json");
+        INFO(pair << outcome.err);
+        CHECK(outcome.exit_code == 1);
+        CHECK_THAT(outcome.err,
+                   Catch::Contains("error: broken.exr: 2 pixels are NaN or infinite, the first at (7, 5)"));
+        const auto report = nlohmann::json::parse(read_text(folder.scratch / "out.json"));
+        CHECK(report["invalid_pixels"] == 2);
+        CHECK(report["untested"] == "broken.exr has pixels in B that are NaN or infinite");
+    }
+    CHECK(folder.json("a.exr rough.exr")["untested"] == "rough.exr has pixels in variance.G that are NaN or infinite");
+}
+
+TEST_CASE("A crop is held against its part of the whole image", "[compare]") {
+    const ImageFolder folder;
+    Image whole = noisy(1, 1), changed = whole;
+    changed.layers[0].values[13 * 32 + 17] += 1;
+    folder.put("whole.exr", whole);
+    folder.put("part.exr", cropped(changed, {16, 10, 12, 8, 32, 24}));
+    for (const char *pair : {"whole.exr part.exr", "part.exr whole.exr"}) {
+        const auto report = folder.json(pair);
+        CHECK(report["mae"].get<double>() == Approx(1.0 / (12 * 8 * 3)));
+        CHECK(report["max_x"] == 17);
+        CHECK(report["max_y"] == 13);
+    }
+}
+
 TEST_CASE("What cannot be compared is refused with what differs", "[compare]") {
     const ImageFolder folder;
     folder.put("a.exr", noisy(1, 1));
     folder.put(
         "small.exr",
         Image{8, 4, {{"R", std::vector<float>(32)}, {"G", std::vector<float>(32)}, {"B", std::vector<float>(32)}}, {}});
-    Image more = noisy(1, 1);
-    more.layers.push_back({"depth", std::vector<float>(32 * 24)});
-    folder.put("more.exr", more);
     const auto refused = [&](const std::string &arguments, const std::string &reason) {
         const Outcome outcome = folder.compare(arguments);
         INFO(arguments << "\n" << outcome.err);
@@ -116,8 +165,18 @@ TEST_CASE("What cannot be compared is refused with what differs", "[compare]") {
         CHECK_THAT(outcome.err, Catch::Contains(reason));
     };
     refused("a.exr small.exr", "the sizes differ: a.exr has 32 x 24 pixels, small.exr has 8 x 4");
-    refused("a.exr more.exr", "the layers differ: a.exr has no depth, which more.exr holds");
-    refused("more.exr a.exr", "the layers differ: a.exr has no depth, which more.exr holds");
+    Image no_green = noisy(1, 1);
+    no_green.layers.erase(no_green.layers.begin() + 1);
+    folder.put("no_green.exr", no_green);
+    refused("a.exr no_green.exr", "no_green.exr: has no layer G");
+    Image part = noisy(1, 1), other = noisy(1, 1);
+    part.crop = {0, 0, 32, 24, 40, 24};
+    other.crop = {8, 0, 32, 24, 40, 24};
+    folder.put("part.exr", part);
+    folder.put("other.exr", other);
+    refused("part.exr other.exr", "the windows differ: part.exr has 32 x 24 at (0, 0) of 40 x 24 pixels, other.exr has "
+                                  "32 x 24 at (8, 0) of 40 x 24");
+    refused("a.exr part.exr", "the sizes differ: a.exr has 32 x 24 pixels, part.exr has 32 x 24 at (0, 0) of 40 x 24");
     refused("a.exr none.exr", "none.exr");
     refused("a.exr a.exr -o d.png", "names the EXR file");
     refused("a.exr a.exr -o none/d.exr", "there is no folder none");

@@ -29,6 +29,10 @@ TEST_CASE("Sums of many samples lose nothing, and leave out what is not finite",
     require_all_pass(check_film(Sources::embedded(), test_seed(40)));
 }
 
+TEST_CASE("A crop has the bits of its part of the image, with filters of any width", "[film]") {
+    require_all_pass(check_crops(Sources::embedded(), test_seed(42)));
+}
+
 // Grey samples of noise around a radiance of 1, count(p) of them in pixel p.
 TEST_CASE("The error of a film whose pixels differ in their counts is that of its noise", "[film]") {
     constexpr int pixels = 1000, films = 200;

@@ -70,7 +70,7 @@ TEST_CASE("An interrupted first pass tells of the pixels without a sample, and c
         CHECK(report["empty_pixels"] > 0);
         CHECK(report["stderr_luminance"].is_null());
         CHECK(report["mean_luminance"].get<double>() == Approx(0.5).epsilon(0.05));
-        CHECK(read_exr(exr).metadata.at("opal.empty_pixels") == report["empty_pixels"].dump());
+        CHECK(read_exr(exr).text("opal.empty_pixels") == report["empty_pixels"].dump());
         if (!rule.empty()) {
             CHECK(report["stop"]["mean_luminance_interval"].is_null());
             CHECK(report["stop"]["relative_error"].is_null());
@@ -101,10 +101,10 @@ TEST_CASE("An interrupted render leaves an image of the samples it finished", "[
                Catch::Contains("interrupted: the image holds") && Catch::Contains("of 100000000 samples a pixel"));
     const Image image = read_exr(exr);
     CHECK(image.width == 64);
-    CHECK(image.metadata.at("opal.interrupted") == "true");
-    CHECK(image.metadata.at("opal.asked_spp") == "100000000");
-    CHECK(image.metadata.at("opal.invalid_samples") == "0");
-    const double spp = std::stod(image.metadata.at("opal.spp"));
+    CHECK(image.text("opal.interrupted") == "true");
+    CHECK(image.text("opal.asked_spp") == "100000000");
+    CHECK(image.text("opal.invalid_samples") == "0");
+    const double spp = image.number("opal.spp");
     CHECK(spp > 1);
     CHECK(spp < 1e8);
     double mean = 0;

@@ -111,11 +111,76 @@ TEST_CASE("What cannot be rendered or written is refused, and nothing is left be
     check_refused(folder, "--width 0", "--width");
     check_refused(folder, "--device 99", "no OpenCL device \"99\"; available: 0 (");
     check_refused(folder, "-o none/out.exr", "there is no folder none");
-    check_refused(folder, "-o out.png", "names the EXR file");
+    check_refused(folder, "-o out.jpg", "-o out.jpg: the ending '.jpg' names no format of Opal's; possible: FILE.exr");
+    check_refused(folder, "-o out", "-o out: the ending is missing; possible: FILE.exr");
+    check_refused(folder, "--crop 18,0,7,4", "--crop 18,0,7,4: is no part of the image of 24 x 12 pixels");
+    check_refused(folder, "--crop 0,0,0,4", "is no part of the image");
+    check_refused(folder, "--crop -1,0,4,4", "is no part of the image");
+    check_refused(folder, "--crop 1,2,3", "--crop 1,2,3: wants X,Y,W,H");
+    check_refused(folder, "--crop 1,2,3,x", "--crop 1,2,3,x: ");
+    check_refused(folder, "-o - --json -", "-o - and --json -: stdout takes one of them");
+    check_refused(folder, "-o out.png --no-png", "nothing would be written");
+    check_refused(folder, "-o out.png --layers variance", "a PNG holds no layers");
+    check_refused(folder, "--no-png --exposure 1", "they shape the PNG, and none is written");
+    check_refused(folder, folder.scene, "2 scenes: their images need a folder, -o FOLDER/");
+    check_refused(folder, folder.scene + " -o out/", "both images would be out/plain.exr");
     check_refused(folder, "--no-png -o /dev/full", "No space left on device");
     check_refused(folder, "--width 65535 --height 65535", "no room for the film and its samples: ");
     check_refused(folder, "--lanes 3", "unknown lanes '3'; available: auto, 1, 4, 8, 16");
     check_refused(folder, "--lighting bsdf --mis one-sample", "makes no sense");
+}
+
+TEST_CASE("The ending of -o says what is written", "[render_command]") {
+    const SceneFolder folder;
+    REQUIRE(run_shell(folder.render("-o out.PNG --exposure -1")).exit_code == 0);
+    CHECK(std::filesystem::exists(folder.scratch / "out.PNG"));
+    CHECK(folder.files() == 2);
+    REQUIRE(run_shell(folder.render("-o - --quiet >stdout.exr")).exit_code == 0);
+    CHECK(read_exr(folder.scratch / "stdout.exr").get("G").values.front() == Approx(2).epsilon(1e-6));
+    CHECK(folder.files() == 3);
+    const Outcome full = run_shell(folder.render("-o - >/dev/full"));
+    CHECK(full.exit_code == 1);
+    CHECK_THAT(full.err, Catch::Contains("error: stdout: cannot be written: No space left on device"));
+    CHECK(run_shell(folder.render("-o /dev/null")).exit_code == 0);
+    CHECK(folder.files() == 3);
+}
+
+TEST_CASE("A crop is a part of the image, and the file and the statistics say which", "[render_command]") {
+    const SceneFolder folder;
+    REQUIRE(run_shell(folder.render("--no-png -o whole.exr --width 48")).exit_code == 0);
+    const Outcome outcome =
+        run_shell(folder.render("--no-png -o part.exr --width 48 --crop 30,10,7,5 --json part.json"));
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK_THAT(outcome.err, Catch::Contains("7 x 5 at (30, 10) of 48 x 24 pixels"));
+    const Image whole = read_exr(folder.scratch / "whole.exr"), part = read_exr(folder.scratch / "part.exr");
+    CHECK(part.crop == Crop{30, 10, 7, 5, 48, 24});
+    CHECK(part.get("G").values == cropped(whole, part.crop).get("G").values);
+    const auto stats = nlohmann::json::parse(read_text(folder.scratch / "part.json"));
+    CHECK(stats["width"] == 7);
+    CHECK(stats["spp"] == 4);
+    CHECK(stats["crop"]["y"] == 10);
+    CHECK(stats["crop"]["of_width"] == 48);
+}
+
+TEST_CASE("Several scenes go into one folder, and one that fails does not stop the others", "[render_command]") {
+    const SceneFolder folder;
+    std::string broken = scene_text, thin = scene_text;
+    folder.scratch.write("broken.xml", broken.replace(broken.find("parallelogram"), 13, "parallelgram"));
+    folder.scratch.write("black.v2.xml", thin.replace(thin.find("5 -5 3"), 6, "50 -5 3"));
+    folder.scratch.write("third.xml", scene_text);
+    const Outcome outcome = run_shell(folder.render("broken.xml black.v2.xml third.xml -o out/"));
+    INFO(outcome.err);
+    CHECK(outcome.exit_code == 1);
+    CHECK_THAT(outcome.err, Catch::Contains("unknown mesh type 'parallelgram'") &&
+                                Catch::Contains("error: 1 of 4 scenes failed: broken.xml"));
+    for (const char *name : {"plain", "black.v2", "third"})
+        for (const char *ending : {".exr", ".png"})
+            CHECK(std::filesystem::exists(folder.scratch / "out" / (std::string(name) + ending)));
+    CHECK_FALSE(std::filesystem::exists(folder.scratch / "out/broken.exr"));
+    // The warning of one scene is not in the header of the next.
+    CHECK_THAT(read_exr(folder.scratch / "out/black.v2.exr").text("opal.warnings"), Catch::Contains("black"));
+    CHECK(read_exr(folder.scratch / "out/third.exr").text("opal.warnings") == "[]");
 }
 
 TEST_CASE("A message that cannot be printed costs neither image nor JSON", "[render_command]") {
@@ -144,9 +209,9 @@ TEST_CASE("Names of any bytes keep the image and the JSON", "[render_command]") 
     CHECK_THAT(stats["scene"].get<std::string>(), Catch::EndsWith("sz\uFFFDne.xml"));
     CHECK_THAT(stats["warnings"][0].get<std::string>(), Catch::Contains("k\uFFFDse.obj:5:1: dropped 1 triangles"));
     const Image image = read_exr(folder.scratch / "b\344r.exr");
-    CHECK(image.metadata.at("opal.scene") == folder.scene); // the bytes themselves
-    CHECK(image.metadata.at("opal.dialect") == "upstream");
-    CHECK_THAT(image.metadata.at("opal.warnings"), Catch::Contains("k\uFFFDse.obj"));
+    CHECK(image.text("opal.scene") == folder.scene); // the bytes themselves
+    CHECK(image.text("opal.dialect") == "upstream");
+    CHECK_THAT(image.text("opal.warnings"), Catch::Contains("k\uFFFDse.obj"));
 }
 
 TEST_CASE("Ctrl-C writes what there is and exits with a code of its own", "[render_command]") {

@@ -167,7 +167,7 @@ TEST_CASE("A reference of another size, scene or without colours is refused befo
     };
     REQUIRE(in_place("lamp.xml --spp 1 --width 12 -o small.exr").exit_code == 0);
     REQUIRE(in_place("other.xml --spp 1 -o other.exr").exit_code == 0);
-    write_exr(Image{24, 16, {{"Y", std::vector<float>(24 * 16)}}, {}}, folder.scratch / "grey.exr");
+    write_exr(Image{24, 16, {{"Z", std::vector<float>(24 * 16)}}, {}}, folder.scratch / "grey.exr");
     for (const auto &[file, reason] : {std::pair{"small.exr", "has 12 x 8 pixels, the scene 24 x 16"},
                                        {"other.exr", "is an image of "},
                                        {"grey.exr", "has no layer R"}}) {
@@ -177,6 +177,31 @@ TEST_CASE("A reference of another size, scene or without colours is refused befo
         CHECK_THAT(outcome.err, Catch::Contains(file) && Catch::Contains(reason));
         CHECK_FALSE(std::filesystem::exists(folder.scratch / "out"));
     }
+}
+
+TEST_CASE("A sweep of a crop is another sweep, and takes the whole image or the crop for a reference", "[sweep]") {
+    const SceneFolder folder;
+    const auto in_place = [&](const std::string &command) {
+        return run_shell("cd " + folder.scratch.path().string() + " && " + OPAL_BINARY + " " + command);
+    };
+    REQUIRE(in_place("lamp.xml --spp 64 --no-png -o whole.exr").exit_code == 0);
+    REQUIRE(in_place("lamp.xml --spp 64 --no-png -o part.exr --crop 4,3,9,8").exit_code == 0);
+    const std::string how = "--strategies lighting=emitter lighting=mis --spp 2 --replicates 2 -o out ";
+    const Outcome outcome = folder.sweep(how + "--crop 4,3,9,8 --reference whole.exr");
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK(read_exr(folder.scratch / "out/equal_time_1.exr").crop == Crop{4, 3, 9, 8, 24, 16});
+    const auto with_whole = nlohmann::json::parse(read_text(folder.scratch / "out/sweep.json"));
+    CHECK(with_whole["crop"] == "9 x 8 at (4, 3) of 24 x 16");
+    CHECK_THAT(folder.sweep(how + "--crop 4,3,9,9 --reference whole.exr").err,
+               Catch::Contains("holds another sweep (crop"));
+    CHECK_THAT(folder.sweep(how + "--reference part.exr").err,
+               Catch::Contains("has 9 x 8 at (4, 3) of 24 x 16 pixels, the scene 24 x 16"));
+    std::filesystem::remove_all(folder.scratch / "out");
+    REQUIRE(folder.sweep(how + "--crop 4,3,9,8 --reference part.exr").exit_code == 0);
+    const auto with_part = nlohmann::json::parse(read_text(folder.scratch / "out/sweep.json"));
+    CHECK(with_part["strategies"][0]["points"][0]["replicates"][0]["mse"] ==
+          with_whole["strategies"][0]["points"][0]["replicates"][0]["mse"]);
 }
 
 TEST_CASE("Several devices and kinds of math are crossed, each device in a process of its own", "[sweep]") {

@@ -42,6 +42,7 @@ Findings check_filters(const Sources &sources, unsigned seed);
 // The film's sums against double on the host, for samples of very different size.
 Findings check_film(const Sources &sources, unsigned seed);
 // Passes cut differently: the same bits.
+Findings check_crops(const Sources &sources, unsigned seed); // hold the bits of the whole image
 Findings check_passes(const Sources &sources, unsigned seed);
 
 } // namespace opal::test

@@ -6,6 +6,8 @@
 #include "support/pictures.h"
 #include "support/rooms.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -44,6 +46,7 @@ Findings check_film(const Sources &sources, unsigned seed) {
     Settings settings{};
     settings.width = pixels;
     settings.height = 1;
+    settings.film = {0, 0, pixels, 1};
     Findings findings;
     for (int lanes : tested_lanes()) {
         BuildOptions build;
@@ -88,6 +91,36 @@ Findings check_film(const Sources &sources, unsigned seed) {
             exact("invalid samples counted and placed", std::vector<cl_uint>(found.begin(), found.begin() + 7) ==
                                                             std::vector<cl_uint>{3, 2, 5, 2, 70, 2, 71}));
     }
+    return findings;
+}
+
+Findings check_crops(const Sources &sources, unsigned seed) {
+    Findings findings;
+    SceneDescription scene = with_strategy(gallery(23, 17), {{"specialise", "off"}, {"sampler", "sobol"}});
+    for (int kind : {FILTER_box, FILTER_gaussian})
+        for (int lanes : tested_lanes()) {
+            RenderSetup setup;
+            setup.lanes = lanes;
+            setup.sources = &sources;
+            scene.camera.filter.kind = kind;
+            scene.camera.filter.radius = kind == FILTER_box ? 0.5 : 2;
+            scene.camera.crop = {};
+            const Film whole = render(scene, 3, seed, setup);
+            // In the middle, at a corner, over whole rows, and a single pixel.
+            for (const Crop &crop :
+                 {Crop{5, 4, 9, 7, 23, 17}, {14, 11, 9, 6, 23, 17}, {0, 3, 23, 2, 23, 17}, {22, 0, 1, 1, 23, 17}}) {
+                scene.camera.crop = crop;
+                const Film part = render(scene, 3, seed, setup);
+                const Image shown = image_of(part, true), expected = cropped(image_of(whole, true), crop);
+                const std::string what = fmt::format("{}, filter {}", text_of(crop), kind);
+                bool same = shown.crop == crop && shown.layers.size() == expected.layers.size();
+                for (const Layer &layer : shown.layers)
+                    same = same && layer.values == expected.get(layer.name).values;
+                findings.push_back(exact("bits of " + what, same));
+                findings.push_back(
+                    exact("counts of " + what, part.count == std::vector<unsigned>(part.count.size(), 3)));
+            }
+        }
     return findings;
 }
 
