@@ -56,10 +56,8 @@ void check_ray_options(const RayOptions &o) {
                                      {"--dump-hits", &o.dump_hits},
                                      {"--dump-triangles", &o.dump_triangles}})
         if (!file->empty() && o.kind.empty())
-            throw Error(fmt::format("{} is of one kind of rays: name it with --kind; available: {}", flag,
-                                    joined(names_of(ray_kinds()))));
-    if (!o.kind.empty())
-        find_row(ray_kinds(), "kind of rays", o.kind);
+            throw UsageError(fmt::format("{} is of one kind of rays: name it with --kind; available: {}", flag,
+                                         joined(names_of(ray_kinds()))));
     for (const std::string *file : {&o.json, &o.dump_rays, &o.dump_hits, &o.dump_triangles})
         if (!file->empty())
             check_writable(*file);
@@ -121,7 +119,12 @@ Command rays_command() {
         .options = append(
             scene_rows(o->scene),
             {device_row(o->device),
-             {.flags = "--kind", .target = &o->kind, .help = kinds, .type = "KIND"},
+             {.flags = "--kind",
+              .target = &o->kind,
+              .help = kinds,
+              .check = Accepts{[](const std::string &name) { find_row(ray_kinds(), "kind of rays", name); },
+                               names_of(ray_kinds())},
+              .type = "KIND"},
              {.flags = "--rays",
               .target = &o->rays,
               .help = "Rays of a kind that are tried, about; those that start nowhere are left out",
@@ -152,6 +155,8 @@ Command rays_command() {
                       "  are two triangles each, degenerate triangles are dropped; flattened = (world - center) * "
                       "scale of the JSON",
               .type = "FILE"}}),
+        .examples = {"opal bench rays scenes/mixed_room.xml",
+                     "opal bench rays scenes/mixed_room.xml --kind shadow --json rays.json"},
         .run = [o] { return run_rays(*o); }};
 }
 
@@ -233,6 +238,8 @@ Command renders_command() {
                           "is told",
                   .check = Range{1, 1000}},
                  {.flags = "--json", .target = &o->json, .help = "File for the figures", .type = "FILE"}}),
+            .examples = {"opal bench render scenes/mixed_room.xml",
+                         "opal bench render scenes/mixed_room.xml --seconds 2 --rounds 9"},
             .run = [o] { return run_renders(*o); }};
 }
 

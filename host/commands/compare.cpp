@@ -195,13 +195,15 @@ Command compare_command() {
                     {.flags = "-o,--output",
                      .target = &o->out,
                      .help = "EXR for the difference A - B (and z.R, z.G, z.B of its tiles); a PNG goes beside it, "
-                             "red where A is brighter, blue where B is"},
-                    {.flags = "--json", .target = &o->json, .help = "File for the figures"},
+                             "red where A is brighter, blue where B is",
+                     .type = "FILE"},
+                    {.flags = "--json", .target = &o->json, .help = "File for the figures", .type = "FILE"},
                     {.flags = "--significance",
                      .target = &o->significance,
                      .help = "Level of the test that both have one mean",
                      .check = Range{1e-12, 0.5}},
                     {.flags = "--quiet", .target = &o->quiet, .help = "Print nothing but warnings and errors"}},
+        .examples = {"opal compare a.exr b.exr", "opal compare a.exr b.exr -o difference.exr --json figures.json"},
         .run = [o] { return run(*o); }};
 }
 

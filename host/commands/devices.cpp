@@ -79,11 +79,13 @@ Command devices_command() {
             .options = {{.flags = "--json", .target = &o->json, .help = "Print JSON"},
                         {.flags = "--device",
                          .target = &o->device,
-                         .help = "What `render` would take: an index, cpu, gpu, or part of a name"},
+                         .help = "What `render` would take: an index, cpu, gpu, or part of a name",
+                         .type = "DEVICE"},
                         {.flags = "--time-limit",
                          .target = &o->time_limit,
                          .help = "Seconds that a driver has to answer",
                          .check = Range{0.001, 3600.0}}},
+            .examples = {"opal devices", "opal devices --device gpu --json"},
             .run = [o] { return run_devices(*o); }};
 }
 

@@ -1,5 +1,6 @@
 // opal extremes: where single precision ends. Scenes are stretched over many decades, single against double precision.
 #include "base/error.h"
+#include "base/exit_code.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/table.h"
@@ -72,7 +73,7 @@ int run(ExtremesOptions o) {
         write_safely(o.json, dump(report, 2) + "\n");
     if (!o.plot.empty())
         write_safely(o.plot, extremes::svg_of(results));
-    return kept ? 0 : 1;
+    return kept ? exit_done : exit_check_failed;
 }
 
 } // namespace
@@ -84,7 +85,10 @@ Command extremes_command() {
         .help = "Stretch scenes over many decades and hold single against double precision",
         .options = {{.flags = "--row",
                      .target = &o->names,
-                     .help = "What to stretch (--list); all of them where none is named"},
+                     .help = "What to stretch (--list); all of them where none is named",
+                     .check = Accepts{[](const std::string &name) { find_row(extremes::stress_rows(), "row", name); },
+                                      names_of(extremes::stress_rows())},
+                     .type = "NAME"},
                     {.flags = "--list", .target = &o->list, .help = "List what can be stretched"},
                     {.flags = "--quick", .target = &o->quick, .help = "Every third value, small pictures"},
                     {.flags = "--side",
@@ -102,6 +106,7 @@ Command extremes_command() {
                     {.flags = "--plot", .target = &o->plot, .help = "SVG of error against parameter", .type = "FILE"},
                     cl_dir_row(o->cl_dir),
                     device_row(o->device)},
+        .examples = {"opal extremes --quick", "opal extremes --row distance --plot distance.svg"},
         .run = [o] { return run(*o); }};
 }
 

@@ -219,6 +219,7 @@ Command inspect_command() {
                          .target = &o->bench,
                          .help = "Render with each feature that is left out, and without: what it saved"},
                         device_row(o->device)}),
+            .examples = {"opal inspect scenes/mixed_room.xml", "opal inspect scenes/cbox_mis.xml --cl --lanes 1"},
             .run = [o] { return run_inspect(*o); }};
 }
 

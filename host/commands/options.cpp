@@ -22,13 +22,19 @@ std::vector<std::string> dialect_choices() {
     return names;
 }
 
-OptionRow override_row(SceneOptions &options, const std::string &name, const std::string &type,
-                       const std::string &help) {
+// A row that set_option understands. values: names that it takes, if it takes names.
+OptionRow override_row(SceneOptions &options, const std::string &name, const std::string &type, const std::string &help,
+                       const std::vector<std::string> &values) {
+    const auto parse = [name](const std::string &value) {
+        Strategy strategy;
+        set_option(strategy, name, value);
+    };
     return {.flags = "--" + name,
             .target = MapEntry{&options.overrides, name},
             .help = help,
+            .check = Accepts{parse, values},
             .type = type,
-            .group = "Strategy"};
+            .group = strategy_group};
 }
 
 } // namespace
@@ -43,9 +49,10 @@ std::vector<OptionRow> scene_rows(SceneOptions &options) {
 }
 
 std::vector<OptionRow> strategy_rows(SceneOptions &options) {
-    std::vector<OptionRow> rows = {override_row(options, "integrator", "NAME", integrator_help())};
+    std::vector<OptionRow> rows = {
+        override_row(options, "integrator", "NAME", integrator_help(), names_of(integrator_types()))};
     for (const StrategyOption &option : strategy_options())
-        rows.push_back(override_row(options, option.name, option.values, option.help));
+        rows.push_back(override_row(options, option.name, option.values, option.help, option.names));
     rows.push_back({.flags = "--lenient",
                     .target = &options.load.lenient,
                     .help =

@@ -1,5 +1,6 @@
 // opal selftest: does this device compute right? Each group of checks runs in a process of its own.
 #include "selftest/selftest.h"
+#include "base/exit_code.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/process.h"
@@ -203,10 +204,6 @@ nlohmann::json SelftestReport::json() const {
 }
 
 int run(const Options &o) {
-    if (o.full && o.quick)
-        throw Error("--quick and --full exclude each other");
-    for (const std::string &group : o.groups)
-        find_row(check_groups(), "group", group);
     if (!o.json.empty())
         check_writable(o.json);
     const DevicePick pick = pick_device(o.device, list_devices());
@@ -224,7 +221,7 @@ int run(const Options &o) {
     print_text(report.text());
     if (!o.json.empty())
         write_safely(o.json, dump(report.json(), 2) + "\n");
-    return report.passed() ? 0 : 1;
+    return report.passed() ? exit_done : exit_check_failed;
 }
 
 // The hidden command that a job runs: one group, whose findings it prints.
@@ -264,19 +261,25 @@ Command selftest_command() {
     return {.name = "selftest",
             .help = "Check that a device and its driver compute right",
             .options = {device_row(o->device),
-                        {.flags = "--quick", .target = &o->quick, .help = "Less than a minute (default)"},
-                        {.flags = "--full", .target = &o->full, .help = "More cases, more samples: minutes"},
+                        {.flags = "--quick", .target = &o->quick, .help = "Less than a minute [this, unless --full]"},
+                        {.flags = "--full",
+                         .target = &o->full,
+                         .help = "More cases, more samples: minutes",
+                         .excludes = "--quick"},
                         {.flags = "--group",
                          .target = &o->groups,
                          .help = "Only this group of checks; may be repeated" + groups,
+                         .check = Accepts{[](const std::string &name) { find_row(check_groups(), "group", name); },
+                                          names_of(check_groups())},
                          .type = "NAME"},
                         {.flags = "--time-limit",
                          .target = &o->time_limit,
                          .help = "Seconds for each group of checks [120, or 1200 with --full]",
                          .check = Positive{}},
                         {.flags = "--seed", .target = &o->seed, .help = "Of the random numbers"},
-                        {.flags = "--json", .target = &o->json, .help = "File for the findings"},
+                        {.flags = "--json", .target = &o->json, .help = "File for the findings", .type = "FILE"},
                         cl_dir_row(o->cl_dir)},
+            .examples = {"opal selftest", "opal selftest --full --device gpu --json selftest.json"},
             .run = [o] { return run(*o); }};
 }
 

@@ -6,6 +6,7 @@
 #include "base/log.h"
 #include "base/read_file.h"
 #include "base/signals.h"
+#include "base/table.h"
 #include "base/units.h"
 #include "commands/commands.h"
 #include "commands/options.h"
@@ -48,14 +49,6 @@ std::string hash_of(const SceneDescription &scene) {
     Fnv1a hash;
     hash.add(std::as_bytes(std::span(bytes)));
     return fmt::format("{:016x}", hash.value());
-}
-
-void check_numbers(const Options &o) {
-    if (o.replicates < 2)
-        throw Error(fmt::format("--replicates {}: an interval needs at least 2", o.replicates));
-    for (unsigned spp : o.spp)
-        if (spp < 1 || spp > first_pilot_sample)
-            throw Error(fmt::format("--spp {}: possible are 1 to {}", spp, first_pilot_sample));
 }
 
 Image read_reference(const std::string &file, const SceneDescription &scene) {
@@ -192,10 +185,9 @@ int run_part_apart(Part part, const SweepPlan &plan, const DevicePick &pick, con
 
 int run(const Options &o) {
     set_quiet(o.quiet);
-    check_numbers(o);
     SceneDescription scene = load_scene(o.scene);
     set_size(scene.camera, o.width, 0);
-    const std::vector<Candidate> strategies = parse_strategies(scene, o.strategies, o.math);
+    const std::vector<Candidate> strategies = as_usage([&] { return parse_strategies(scene, o.strategies, o.math); });
     const Sources sources = load_sources(o.scene.cl_dir);
     SweepPlan plan{.folder = {},
                    .seed = o.seed,
@@ -242,8 +234,9 @@ Command sweep_command() {
             {{.flags = "--math",
               .target = &o->math,
               .help = "Cross the strategies with these: precise,fast",
+              .check = Accepts{[](const std::string &name) { find_row(math_modes(), "math", name); },
+                               names_of(math_modes())},
               .type = "MODE,...",
-              .group = "Strategy",
               .comma_separated = true},
              {.flags = "--device",
               .target = &o->devices,
@@ -261,11 +254,13 @@ Command sweep_command() {
              {.flags = "--spp",
               .target = &o->spp,
               .help = "Samples per pixel of the points",
+              .check = Range{1u, first_pilot_sample},
               .type = "N,...",
               .comma_separated = true},
              {.flags = "--replicates",
               .target = &o->replicates,
-              .help = "Renders of each point, with seeds of their own; at least 2"},
+              .help = "Renders of each point, with seeds of their own; an interval needs at least 2",
+              .check = Range{2u, 1000000u}},
              {.flags = "--seed", .target = &o->seed, .help = "Of the first replicate's random numbers"},
              {.flags = "--reference",
               .target = &o->reference,
@@ -277,6 +272,7 @@ Command sweep_command() {
              {.flags = "--budget",
               .target = &o->budget,
               .help = "Kernel time for all of it: leaves out the largest --spp until it fits",
+              .check = Accepts{parse_seconds},
               .type = "TIME"},
              {.flags = "--clock",
               .target = &o->clock,
@@ -285,13 +281,15 @@ Command sweep_command() {
               .check = OneOf<std::string>{{"kernel", "cpu"}}},
              {.flags = "--width",
               .target = &o->width,
-              .help = "Pixels; keeps the aspect (default: the scene's)",
+              .help = "Pixels; keeps the aspect [the scene's]",
               .check = Range{1, 65535}},
              {.flags = "-o,--output",
               .target = &o->out,
               .help = "Folder; a sweep that is there already goes on [SCENE_sweep]",
               .type = "FOLDER"},
              {.flags = "--quiet", .target = &o->quiet, .help = "Print the verdict, warnings and errors only"}}),
+        .examples = {"opal sweep scenes/cbox_mis.xml",
+                     "opal sweep scenes/mixed_room.xml --strategies all --budget 10min -o sweep"},
         .run = [o] { return run(*o); }};
 }
 

@@ -1,4 +1,5 @@
 // opal test: Nori's <test> files on a device.
+#include "base/exit_code.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "commands/commands.h"
@@ -88,7 +89,7 @@ int run(const Options &o) {
     print("{} of {} cases passed\n", cases - rejected, cases);
     if (!o.json.empty())
         write_safely(o.json, dump(report, 2) + "\n");
-    return rejected ? 1 : 0;
+    return rejected ? exit_check_failed : exit_done;
 }
 
 } // namespace
@@ -112,8 +113,10 @@ Command test_command() {
                                 .help = "Level of each file, split over its cases [the file's]",
                                 .check = Range{1e-12, 0.5}},
                                {.flags = "--seed", .target = &o->seed, .help = "Of the random numbers"},
-                               {.flags = "--json", .target = &o->json, .help = "File for the results"}},
+                               {.flags = "--json", .target = &o->json, .help = "File for the results", .type = "FILE"}},
                               strategy_rows(o->scene)),
+            .examples = {"opal test tests/cases/conformance/furnace.xml",
+                         "opal test my_test.xml --significance 0.001 --json test.json"},
             .run = [o] { return run(*o); }};
 }
 

@@ -1,5 +1,6 @@
 // opal verify: do all unbiased strategies agree on a scene?
 #include "base/error.h"
+#include "base/exit_code.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/progress.h"
@@ -55,10 +56,11 @@ void simplify_image(Camera &camera, const Options &o) {
 }
 
 std::vector<NamedStrategy> choose(const SceneDescription &scene, const Options &o) {
-    std::vector<NamedStrategy> strategies =
-        o.strategies.empty() ? sensible_strategies(scene) : named_strategies(scene, o.strategies);
+    std::vector<NamedStrategy> strategies = o.strategies.empty()
+                                                ? sensible_strategies(scene)
+                                                : as_usage([&] { return named_strategies(scene, o.strategies); });
     if (strategies.size() < 2)
-        throw Error(
+        throw UsageError(
             fmt::format("nothing to hold against each other: {} strategy; --strategies names at least two, as in "
                         "lighting=mis,mis=power;lighting=emitter",
                         strategies.size()));
@@ -177,7 +179,7 @@ int run(const Options &o) {
         leave_evidence(folder, agreement, renders, report);
     if (!o.json.empty())
         write_safely(o.json, dump(report, 2) + "\n");
-    return agreement.holds() ? 0 : 1;
+    return agreement.holds() ? exit_done : exit_check_failed;
 }
 
 } // namespace
@@ -193,7 +195,8 @@ Command verify_command() {
              {.flags = "--strategies",
               .target = &o->strategies,
               .help = "Those to test, 'lighting=mis,mis=power;lighting=emitter' [all that make sense here, or where "
-                      "these are more than 12 a set in which each pair of choices occurs]"},
+                      "these are more than 12 a set in which each pair of choices occurs]",
+              .type = "STRATEGIES"},
              {.flags = "--budget",
               .target = &o->budget,
               .help = "Time for all strategies together: 60s, 2min, 1h",
@@ -208,13 +211,16 @@ Command verify_command() {
               .target = &o->width,
               .help = "Pixels [32 on the longer side, the scene's aspect]",
               .check = Range{1, 65535}},
-             {.flags = "--height", .target = &o->height, .help = "Pixels", .check = Range{1, 65535}},
+             {.flags = "--height", .target = &o->height, .help = "Pixels [as --width]", .check = Range{1, 65535}},
              {.flags = "--seed", .target = &o->seed, .help = "Of the random numbers"},
              {.flags = "-o,--output",
               .target = &o->out,
-              .help = "Folder for the evidence [verify_SCENE, on disagreement only]"},
-             {.flags = "--json", .target = &o->json, .help = "File for the results"},
+              .help = "Folder for the evidence [verify_SCENE, on disagreement only]",
+              .type = "FOLDER"},
+             {.flags = "--json", .target = &o->json, .help = "File for the results", .type = "FILE"},
              {.flags = "--quiet", .target = &o->quiet, .help = "Print nothing but the verdict, warnings and errors"}}),
+        .examples = {"opal verify scenes/cbox_mis.xml",
+                     "opal verify scenes/mixed_room.xml --budget 5min --json verify.json"},
         .run = [o] { return run(*o); }};
 }
 

@@ -1,4 +1,5 @@
 // opal warp: tests samples of a warp, BSDF or light against their density, and draws both.
+#include "base/exit_code.h"
 #include "base/log.h"
 #include "base/table.h"
 #include "commands/commands.h"
@@ -46,10 +47,9 @@ int run(const Options &o) {
     if (o.list)
         return print_list();
     if (o.name.empty())
-        throw Error("opal warp needs a name; available: " + joined(names_of(targets())));
+        throw UsageError("opal warp needs a name; available: " + joined(names_of(targets())));
     if (!o.plot.empty())
         check_writable(o.plot);
-    find_row(targets(), "warp", o.name);
     const DevicePick pick = pick_device(o.device, list_devices());
     const Device device = open_device(pick.info);
     BuildOptions build;
@@ -66,7 +66,7 @@ int run(const Options &o) {
         write_png(plot_density(target.sampled, check,
                                fmt::format("{}   P = {:.3g}", target.description, check.test.result.p_value)),
                   o.plot);
-    return check.test.result.rejected(o.significance) ? 1 : 0;
+    return check.test.result.rejected(o.significance) ? exit_check_failed : exit_done;
 }
 
 } // namespace
@@ -77,17 +77,20 @@ Command warp_command() {
         {.flags = "NAME",
          .target = &o->name,
          .help = "What to draw: a warp, bsdf:TYPE or light:KIND (--list)",
+         .check = Accepts{[](const std::string &name) { find_row(targets(), "warp", name); }, names_of(targets())},
          .type = ""},
         {.flags = "--list", .target = &o->list, .help = "List the names and their parameters"}};
     for (const TargetParameter &row : target_parameters())
         rows.push_back({.flags = "--" + row.name,
                         .target = MapEntry{&o->parameters, row.name},
                         .help = row.help,
+                        .type = "VALUE",
                         .group = "Parameters"});
     for (const char *axis : {"triangle-choice", "emitter-choice"})
         rows.push_back({.flags = std::string("--") + axis,
                         .target = MapEntry{&o->axes, axis},
                         .help = "of light:..., as opal render has it",
+                        .type = "NAME",
                         .group = "Parameters"});
     return {
         .name = "warp",
@@ -101,7 +104,10 @@ Command warp_command() {
               .help = "Level of the test",
               .check = Range{1e-12, 0.5}},
              {.flags = "--seed", .target = &o->seed, .help = "Of the random numbers"},
-             {.flags = "--plot", .target = &o->plot, .help = "PNG of the samples' density, the pdf and the residual"},
+             {.flags = "--plot",
+              .target = &o->plot,
+              .help = "PNG of the samples' density, the pdf and the residual",
+              .type = "FILE"},
              {.flags = "--lanes",
               .target = &o->lanes,
               .help = "Width [the device's]",
@@ -112,6 +118,7 @@ Command warp_command() {
               .check = OneOf<std::string>{{"precise", "fast"}}},
              cl_dir_row(o->cl_dir),
              device_row(o->device)}),
+        .examples = {"opal warp cosine_hemisphere", "opal warp bsdf:microfacet --alpha 0.1 --plot lobe.png"},
         .run = [o] { return run(*o); }};
 }
 

@@ -1,4 +1,5 @@
 // `opal render` as its users meet it: files, statistics, refusals, Ctrl-C.
+#include "base/exit_code.h"
 #include "image/image.h"
 #include "support/mutants.h"
 
@@ -39,10 +40,10 @@ struct SceneFolder {
     }
 };
 
-void check_refused(const SceneFolder &folder, const std::string &arguments, const std::string &reason) {
+void check_refused(const SceneFolder &folder, const std::string &arguments, const std::string &reason, int code) {
     const Outcome outcome = run_shell(folder.render(arguments));
     INFO(arguments << "\n" << outcome.err);
-    CHECK(outcome.exit_code == 1);
+    CHECK(outcome.exit_code == code);
     CHECK_THAT(outcome.err, Catch::Contains("error: ") && Catch::Contains(reason));
     CHECK(folder.files() == 1); // the scene
 }
@@ -107,15 +108,15 @@ TEST_CASE("Size, samples and output are the command line's where given", "[rende
 
 TEST_CASE("What cannot be rendered or written is refused, and nothing is left behind", "[render_command]") {
     const SceneFolder folder;
-    check_refused(folder, "--spp 0", "--spp");
-    check_refused(folder, "--width 0", "--width");
-    check_refused(folder, "--device 99", "no OpenCL device \"99\"; available: 0 (");
-    check_refused(folder, "-o none/out.exr", "there is no folder none");
-    check_refused(folder, "-o out.png", "names the EXR file");
-    check_refused(folder, "--no-png -o /dev/full", "No space left on device");
-    check_refused(folder, "--width 65535 --height 65535", "no room for the film and its samples: ");
-    check_refused(folder, "--lanes 3", "unknown lanes '3'; available: auto, 1, 4, 8, 16");
-    check_refused(folder, "--lighting bsdf --mis one-sample", "makes no sense");
+    check_refused(folder, "--spp 0", "--spp", exit_usage);
+    check_refused(folder, "--width 0", "--width", exit_usage);
+    check_refused(folder, "--device 99", "no OpenCL device \"99\"; available: 0 (", exit_failed);
+    check_refused(folder, "-o none/out.exr", "there is no folder none", exit_failed);
+    check_refused(folder, "-o out.png", "names the EXR file", exit_failed);
+    check_refused(folder, "--no-png -o /dev/full", "No space left on device", exit_failed);
+    check_refused(folder, "--width 65535 --height 65535", "no room for the film and its samples: ", exit_failed);
+    check_refused(folder, "--lanes 3", "unknown lanes '3'; available: auto, 1, 4, 8, 16", exit_usage);
+    check_refused(folder, "--lighting bsdf --mis one-sample", "makes no sense", exit_failed);
 }
 
 TEST_CASE("A message that cannot be printed costs neither image nor JSON", "[render_command]") {
