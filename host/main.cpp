@@ -23,10 +23,14 @@ std::vector<std::string> with_command(const std::vector<Command> &commands, std:
     const auto names_scene = [](const std::string &word) {
         return std::filesystem::path(word).extension() == ".xml" || std::filesystem::is_regular_file(word);
     };
+    const auto names_file = [](const std::string &word) { // a scene or mesh, perhaps misspelt: reading it says so
+        return !word.starts_with('-') && std::filesystem::path(word).has_extension();
+    };
     const bool is_command =
         std::any_of(commands.begin(), commands.end(), [&](const Command &c) { return words[0] == c.name; });
     const bool is_flag = words[0].starts_with('-');
-    if (!is_command && (names_scene(words[0]) || (is_flag && std::any_of(words.begin(), words.end(), names_scene))))
+    if (!is_command && (names_file(words[0]) || names_scene(words[0]) ||
+                        (is_flag && std::any_of(words.begin(), words.end(), names_scene))))
         words.insert(words.begin(), "render");
     return words;
 }

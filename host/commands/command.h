@@ -19,10 +19,11 @@ struct MapEntry {
     std::string key;
 };
 
-// The variable that an option sets. A bool is a flag without a value, a vector takes several values, an optional stays
-// empty if the option is not given.
-using OptionTarget = std::variant<bool *, int *, unsigned *, double *, std::string *, std::filesystem::path *, MapEntry,
-                                  std::optional<unsigned> *, std::vector<unsigned> *, std::vector<std::string> *>;
+// The variable that an option sets. A bool is a flag without a value, a vector takes several values, a map those given
+// as NAME=VALUE, an optional stays empty if the option is not given.
+using OptionTarget = std::variant<bool *, std::map<std::string, std::string> *, int *, unsigned *, double *,
+                                  std::string *, std::filesystem::path *, MapEntry, std::optional<unsigned> *,
+                                  std::vector<unsigned> *, std::vector<std::string> *>;
 
 // Checks of a value.
 template <class T> struct Range {

@@ -97,6 +97,8 @@ void print_scene(const SceneDescription &scene, const FlatScene &flat) {
     const Camera &camera = scene.camera;
     row("scene", "{}", scene.file.string());
     row("dialect", "{}", name_of(scene.dialect));
+    for (const auto &[name, value] : scene.definitions)
+        row("defined", "{} = {}", name, value);
     row("camera", "{} x {} pixels, {}, near {:g}, far {:g}", camera.width, camera.height, camera_text(camera),
         camera.near_clip, camera.far_clip);
     row("filter", "{}{}", filter_text(camera.filter), camera.filter.given ? "" : " (the dialect's default)");

@@ -64,6 +64,11 @@ std::vector<OptionRow> strategy_rows(SceneOptions &options) {
                             "2012: the camera's +x points to the right of the image), or auto: by its names",
                     .check = OneOf<std::string>{dialect_choices()},
                     .type = "NAME"});
+    rows.push_back({.flags = "-D,--define",
+                    .target = &options.load.definitions,
+                    .help = "The value for $NAME in the scene's attributes; without it, that of <default name=\"NAME\" "
+                            "value=\"...\"/>; may be repeated",
+                    .type = "NAME=VALUE"});
     rows.push_back({.flags = "--cl-dir",
                     .target = &options.cl_dir,
                     .help = "Read the kernels from this copy of cl/ [those in the binary]",

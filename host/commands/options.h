@@ -15,7 +15,7 @@ struct SceneOptions {
     std::string cl_dir; // empty: the embedded kernels
 };
 
-// --integrator, a flag for each strategy option, --lenient, --dialect, --cl-dir.
+// --integrator, a flag for each strategy option, --lenient, --dialect, -D, --cl-dir.
 std::vector<OptionRow> strategy_rows(SceneOptions &options);
 // SCENE.xml, then strategy_rows.
 std::vector<OptionRow> scene_rows(SceneOptions &options);

@@ -98,6 +98,14 @@ void set(const OptionRow &row, const std::string &text) {
                        check_text(text, row.check);
                        target->push_back(text);
                    },
+                   [&](std::map<std::string, std::string> *target) {
+                       const size_t name_end = text.find('=');
+                       const std::string name = text.substr(0, name_end);
+                       if (name_end == text.npos || name.empty())
+                           throw Error(fmt::format("'{}' is not NAME=VALUE", text));
+                       if (!target->emplace(name, text.substr(name_end + 1)).second)
+                           throw Error(name + " is given twice");
+                   },
                    [&](const MapEntry &target) {
                        check_text(text, row.check);
                        (*target.map)[target.key] = text;
@@ -109,8 +117,10 @@ void set(const OptionRow &row, const std::string &text) {
         row.target);
 }
 
-bool is_vector(const OptionRow &row) {
-    return std::holds_alternative<std::vector<unsigned> *>(row.target) ||
+// May be given several times.
+bool is_repeatable(const OptionRow &row) {
+    return std::holds_alternative<std::map<std::string, std::string> *>(row.target) ||
+           std::holds_alternative<std::vector<unsigned> *>(row.target) ||
            std::holds_alternative<std::vector<std::string> *>(row.target);
 }
 
@@ -193,7 +203,7 @@ private:
         const bool first = given_.insert(&row).second;
         if (first)
             clear(row);
-        else if (!is_vector(row) && !std::holds_alternative<bool *>(row.target))
+        else if (!is_repeatable(row) && !std::holds_alternative<bool *>(row.target))
             refuse(flag + " is given twice");
         for (const OptionRow &other : command_.options)
             for (const auto &[a, b] : {std::pair(&row, &other), std::pair(&other, &row)})
@@ -218,7 +228,7 @@ private:
 
     void give_argument(const std::string &word) {
         for (const OptionRow &row : command_.options)
-            if (is_positional(row) && (is_vector(row) || !given_.contains(&row))) {
+            if (is_positional(row) && (is_repeatable(row) || !given_.contains(&row))) {
                 if (!given_.contains(&row))
                     begin(row, row.flags);
                 return give(row, row.flags, word);

@@ -39,10 +39,13 @@ struct Options {
     bool quiet = false;
 };
 
-// The identity of a sweep, by which it is resumed: a hash of the scene's text, its resolved strategy and its meshes.
+// The identity of a sweep, by which it is resumed: a hash of the scene's text, its values of -D, its resolved strategy
+// and its meshes.
 std::string hash_of(const SceneDescription &scene) {
     std::string bytes = read_file(scene.file);
     bytes += dump(strategy_json(scene));
+    if (!scene.definitions.empty())
+        bytes += dump(scene.definitions);
     for (const Mesh &mesh : scene.meshes)
         if (const auto *m = std::get_if<TriangleMesh>(&mesh.shape))
             bytes.append(reinterpret_cast<const char *>(m->positions.data()), m->positions.size() * sizeof(Vec3));
@@ -73,6 +76,7 @@ SweepRecord fresh_record(const Options &o, const SceneDescription &scene, const 
     r.scene = scene.file.string();
     r.scene_hash = hash_of(scene);
     r.dialect = name_of(scene.dialect);
+    r.definitions = scene.definitions;
     for (const DevicePick &d : devices)
         r.devices.push_back({d.info.index, d.info.name, d.info.driver});
     r.reference_file = o.reference;

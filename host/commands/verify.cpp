@@ -168,6 +168,7 @@ int run(const Options &o) {
     nlohmann::json report = json_of(agreement, renders);
     report.update(object({{"scene", scene.file.string()},
                           {"dialect", name_of(scene.dialect)},
+                          {"definitions", scene.definitions},
                           {"device", pick.info.name},
                           {"driver", pick.info.driver},
                           {"seed", o.seed},

@@ -1,5 +1,6 @@
 #include "read/file_kind.h"
 
+#include "base/command_line.h"
 #include "base/error.h"
 #include "base/read_file.h"
 
@@ -118,12 +119,23 @@ std::string_view xml_root(std::string_view text) {
     }
 }
 
-// Nori's forks have some of Mitsuba's tags, and some scenes of Nori a version: both together are Mitsuba's.
-bool is_mitsuba(std::string_view root) {
-    const std::string_view tag = root.substr(0, root.find('>'));
-    if (!contains(tag, "version"))
+// A version of three numbers in the tag: version="3.0.0".
+bool has_long_version(std::string_view tag) {
+    const size_t at = tag.find("version");
+    if (at == tag.npos)
         return false;
-    for (std::string_view own : {"<shape", "<film", "<default", "<include", "<rgb", "<spectrum", "to_world"})
+    const size_t begin = tag.find_first_of("\"'", at);
+    const std::string_view value =
+        begin == tag.npos ? "" : tag.substr(begin + 1, tag.find(tag[begin], begin + 1) - begin - 1);
+    return std::count(value.begin(), value.end(), '.') == 2;
+}
+
+// Nori's forks have some of Mitsuba's tags, and some scenes of Nori a version: both together, with a version as
+// Mitsuba writes it, are Mitsuba's.
+bool is_mitsuba(std::string_view root) {
+    if (!has_long_version(root.substr(0, root.find('>'))))
+        return false;
+    for (std::string_view own : {"<shape", "<film", "<sensor", "<default", "<include", "<rgb", "<spectrum", "to_world"})
         if (contains(root, own))
             return true;
     return false;
@@ -171,7 +183,7 @@ FileKindRow kind_of_text(std::string_view text) {
         return contains(text, "\"asset\"") && contains(text, "\"version\"")
                    ? FileKindRow{FileKind::other, "a glTF scene", by_assimp}
                    : FileKindRow{FileKind::text, "JSON", no_text_format};
-    if (first_word(start) == "solid" && contains(start, "facet"))
+    if (first_word(start) == "solid" && (contains(start, "facet") || contains(start, "endsolid")))
         return {FileKind::other, "an STL mesh", by_assimp};
     const std::string_view statement = first_statement(start);
     if (statement == "newmtl")
@@ -194,6 +206,14 @@ const char *name_of(FileKind wanted) {
     default:
         return "a scene";
     }
+}
+
+// The advice with the file's name in it, as a shell takes it.
+std::string advice_for(const std::filesystem::path &file, std::string advice) {
+    const std::string placeholder = "FILE", name = shell_word(file.string());
+    if (const size_t at = advice.find(placeholder); at != std::string::npos)
+        advice.replace(at, placeholder.size(), name);
+    return advice;
 }
 
 // An old Macintosh's line end; carriage returns before a line feed, or at the end of the file, are none.
@@ -228,7 +248,7 @@ FileKindRow kind_of(std::string_view bytes) {
 
 std::string wrong_kind_text(const std::filesystem::path &file, const FileKindRow &found, FileKind wanted) {
     return fmt::format("{}: is {}, not {}{}{}", file.string(), found.name, name_of(wanted),
-                       found.advice.empty() ? "" : "; ", found.advice);
+                       found.advice.empty() ? "" : "; ", advice_for(file, found.advice));
 }
 
 std::string read_text_file(const std::filesystem::path &file, FileKind wanted) {
@@ -239,9 +259,8 @@ std::string read_text_file(const std::filesystem::path &file, FileKind wanted) {
     if (text.starts_with("\xef\xbb\xbf"))
         text.erase(0, 3);
     if (lone_carriage_return(text) != text.npos)
-        throw Error(fmt::format("{}: lines end with a carriage return alone, as on old Macintoshes; "
-                                "convert them: tr '\\r' '\\n' < FILE > NEW",
-                                file.string()));
+        throw Error(fmt::format("{}: lines end with a carriage return alone, as on old Macintoshes; {}", file.string(),
+                                advice_for(file, "convert them: tr '\\r' '\\n' < FILE > NEW")));
     return text;
 }
 

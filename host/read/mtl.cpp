@@ -173,8 +173,6 @@ private:
 
     void begin_material(std::string_view name) {
         end_material();
-        if (name.empty())
-            fail("newmtl lacks a name");
         material_ = {};
         material_.name = name;
         material_.place = place_of(reading_);
@@ -228,6 +226,8 @@ private:
             fail(fmt::format("'{}' must be between 0 and 1", reading_));
         if (value < 0 && statement != "anisor" && statement != "aniso")
             fail(fmt::format("'{}' must not be negative", reading_));
+        if (statement == "ni" && static_cast<float>(value) == 0)
+            return warn_here("'Ni' 0 is no index of refraction: it is ignored");
         if (statement == "tr")
             tr_ = value;
         else
@@ -237,6 +237,7 @@ private:
     // Options may stand before and behind the name, which is all the rest: it may hold blanks.
     void read_texture(const std::string &statement, std::string_view rest) {
         MtlTexture texture;
+        texture.statement = reading_;
         texture.place = place_of(reading_);
         std::vector<std::string_view> words = split_words(rest);
         const char *name_begin = nullptr, *name_end = nullptr;
@@ -263,7 +264,7 @@ private:
         if (name.size() >= 2 && name.front() == '"' && name.back() == '"')
             name = name.substr(1, name.size() - 2);
         if (name.empty())
-            fail(fmt::format("'{}' names no file", reading_));
+            return warn_here(fmt::format("'{}' names no file: it is ignored", reading_));
         texture.file = name;
         std::replace(texture.file.begin(), texture.file.end(), '\\', '/');
         if (texture.file.starts_with("./"))

@@ -11,6 +11,7 @@ namespace opal {
 
 // An image that a statement such as `map_Kd -s 2 2 wood.png` names.
 struct MtlTexture {
+    std::string statement;                           // as written: "map_Kd"
     std::string file;                                // as written, with forward slashes
     std::array<double, 2> scale{1, 1}, offset{0, 0}; // -s and -o: uv times scale, plus offset
     bool clamp = false;                              // -clamp on

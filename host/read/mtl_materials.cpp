@@ -11,7 +11,7 @@ namespace opal {
 
 namespace {
 
-constexpr double max_exponent = 1e5; // of a Phong lobe in the place of a smooth metal: about a mirror
+constexpr double max_exponent = 1e5; // of a Phong lobe: about a mirror; single precision holds it well
 
 double grey_of(const Color &c) { return (c[0] + c[1] + c[2]) / 3; }
 double largest_of(const Color &c) { return *std::max_element(c.begin(), c.end()); }
@@ -67,8 +67,11 @@ void add_other_layers(const Statements &of, PrincipledMaterial &material) {
         material.roughness = std::pow(2 / (material.phong_exponent + 2), 0.25); // alpha is sqrt(2 / (Ns + 2))
     }
     const bool says_glass = illum == 4 || illum == 6 || illum == 7 || illum == 9;
-    if (of.has("tf") && (says_glass || of.has("pr")))
+    if (of.has("tf") && (says_glass || of.has("pr"))) {
         material.transmission = grey_of(of.color("tf", 0));
+        if (!of.has("pr") && material.phong_exponent == 0)
+            material.roughness = 0; // nothing says how rough the glass is
+    }
     material.coat = of.number("pc", 0);
 }
 
@@ -96,14 +99,14 @@ Bsdf phong_of(const Color &diffuse, Color specular, double exponent, std::vector
         specular = scaled(specular, rest / ks);
     }
     const double ks = largest_of(specular);
-    if (ks == 0)
+    const double share = ks > 0 ? kd / (kd + ks) : 1;
+    if (static_cast<float>(share) == 1) // the lobe would never be drawn
         return diffuse_of(diffuse);
     bsdf_phong_record phong;
-    const double share = kd / (kd + ks);
     phong.pd = share;
     phong.kd = parameter_of(share > 0 ? scaled(diffuse, 1 / share) : Color{});
     phong.ks = parameter_of(scaled(specular, 1 / (1 - share)));
-    phong.n = exponent;
+    phong.n = std::min(exponent, max_exponent);
     return phong;
 }
 
@@ -126,7 +129,7 @@ Bsdf metal_of(const PrincipledMaterial &material, std::vector<std::string> &lack
         return bsdf_mirror_record{};
     lacking.push_back("metal, which becomes a Phong lobe of its colour");
     const double alpha = square(material.roughness);
-    const double exponent = alpha > 0 ? std::min(2 / square(alpha) - 2, max_exponent) : max_exponent;
+    const double exponent = alpha > 0 ? 2 / square(alpha) - 2 : max_exponent;
     return phong_of(scaled(material.base, 1 - std::min(material.metallic, 1.0)),
                     scaled(material.base, std::min(material.metallic, 1.0)), std::max(exponent, 0.0), lacking);
 }
@@ -166,6 +169,7 @@ PrincipledMaterial principled_of(const MtlMaterial &written) {
         add_blender_layers(of, material);
     else
         add_other_layers(of, material);
+    material.roughness = std::min(material.roughness, 1.0);
     return material;
 }
 
@@ -189,7 +193,7 @@ SurfaceOfMaterial surface_of(const MtlMaterial &written) {
         surface.lacking.push_back("anisotropy");
     for (const auto &[statement, texture] : written.textures)
         surface.lacking.push_back(
-            fmt::format("{} {}{}", statement, texture.file,
+            fmt::format("{} {}{}", texture.statement, texture.file,
                         statement == "map_ke" && written.by_blender ? ", whose strength Blender has not written" : ""));
     return surface;
 }

@@ -25,21 +25,35 @@ bool is_file(const fs::path &path) {
     return fs::is_regular_file(path, ignored);
 }
 
+// A '#' behind a blank seems to begin a comment; names may hold one.
+std::string without_comment(const std::string &name) {
+    for (size_t at = name.find('#', 1); at != std::string::npos; at = name.find('#', at + 1))
+        if (name[at - 1] == ' ' || name[at - 1] == '\t')
+            return name.substr(0, name.find_last_not_of(" \t", at - 1) + 1);
+    return name;
+}
+
+std::string without_quotes(const std::string &name) {
+    return name.size() > 2 && name.front() == '"' && name.back() == '"' ? name.substr(1, name.size() - 2) : name;
+}
+
 // The files of a statement `mtllib`: its whole rest is one name, which may hold blanks; where there is no such file,
 // its words are names.
 std::vector<fs::path> files_of(const ObjLibrary &library, const fs::path &obj) {
-    if (const fs::path whole = beside(obj, library.names); is_file(whole))
-        return {whole};
+    const std::string names = without_comment(library.names);
+    for (const std::string &name : {library.names, names})
+        if (const fs::path whole = beside(obj, without_quotes(name)); is_file(whole))
+            return {whole};
     std::vector<fs::path> files;
     const std::string blanks = " \t";
-    for (size_t at = library.names.find_first_not_of(blanks); at != std::string::npos;) {
-        const size_t end = std::min(library.names.find_first_of(blanks, at), library.names.size());
-        const std::string word = library.names.substr(at, end - at);
+    for (size_t at = names.find_first_not_of(blanks); at != std::string::npos;) {
+        const size_t end = std::min(names.find_first_of(blanks, at), names.size());
+        const std::string word = without_quotes(names.substr(at, end - at));
         if (const fs::path file = beside(obj, word); is_file(file))
             files.push_back(file);
         else
             warn(fmt::format("{}: no such material library: {}", library.place.text(), file.string()));
-        at = library.names.find_first_not_of(blanks, end);
+        at = names.find_first_not_of(blanks, end);
     }
     return files;
 }
@@ -55,37 +69,44 @@ Materials read_libraries(const ObjFile &obj, const fs::path &file) {
     return materials;
 }
 
-// The material of that name, or without the comment that a name seems to end with; null if there is none.
+// The material of that name, or without the comment that one of the two names seems to end with; null if there is none.
 const MtlMaterial *find_material(const Materials &materials, const std::string &name) {
     for (std::string tried = name;;) {
         if (const auto found = materials.find(tried); found != materials.end())
             return &found->second;
         const size_t comment = tried.rfind(" #");
         if (comment == std::string::npos)
-            return nullptr;
+            break;
         tried.erase(std::min(tried.find_last_not_of(' ', comment) + 1, comment));
     }
+    const auto found = std::find_if(materials.begin(), materials.end(),
+                                    [&](const auto &entry) { return without_comment(entry.first) == name; });
+    return found == materials.end() ? nullptr : &found->second;
 }
 
-// The triangles of each material, by index; those before the first `usemtl` have none.
-struct Part {
-    unsigned material = OPAL_NONE;
-    std::vector<size_t> triangles;
+// The triangles of each material, by index, in the order of the materials' first use. OPAL_NONE: of those before the
+// first `usemtl`.
+struct Parts {
+    std::vector<unsigned> materials;
+    std::vector<std::vector<size_t>> triangles; // of each of `materials`
 };
 
-std::vector<Part> parts_of(const ObjFile &obj) {
-    std::vector<Part> parts;
-    const size_t count = obj.mesh.triangles.size();
+Parts parts_of(const ObjFile &obj) {
+    Parts parts;
+    std::map<unsigned, size_t> part_of; // by material
     for (size_t i = 0; i < obj.material_runs.size(); i++) {
         const ObjMaterialRun run = obj.material_runs[i];
-        const size_t end = i + 1 < obj.material_runs.size() ? obj.material_runs[i + 1].first : count;
+        const size_t end =
+            i + 1 < obj.material_runs.size() ? obj.material_runs[i + 1].first : obj.mesh.triangles.size();
         if (run.first == end)
             continue;
-        auto part = std::find_if(parts.begin(), parts.end(), [&](const Part &p) { return p.material == run.material; });
-        if (part == parts.end())
-            part = parts.insert(parts.end(), {run.material, {}});
+        const auto [part, is_new] = part_of.try_emplace(run.material, parts.materials.size());
+        if (is_new) {
+            parts.materials.push_back(run.material);
+            parts.triangles.emplace_back();
+        }
         for (size_t triangle = run.first; triangle < end; triangle++)
-            part->triangles.push_back(triangle);
+            parts.triangles[part->second].push_back(triangle);
     }
     return parts;
 }
@@ -111,28 +132,33 @@ void add_surface(const MtlMaterial &material, const ObjMaterialOptions &options,
 std::vector<Mesh> meshes_by_material(ObjFile &&obj, const fs::path &file, const Mesh &mesh,
                                      ObjMaterialOptions options) {
     std::vector<Mesh> meshes;
-    const std::vector<Part> parts = parts_of(obj);
-    if (parts.empty()) { // no `usemtl`
+    const Parts parts = parts_of(obj);
+    if (parts.materials.empty()) { // no `usemtl`
         meshes.push_back(mesh);
         meshes.back().shape = std::move(obj.mesh);
         return meshes;
     }
     const Materials materials = read_libraries(obj, file);
-    for (const Part &part : parts) {
+    std::vector<TriangleMesh> shapes;
+    if (parts.materials.size() == 1)
+        shapes.push_back(std::move(obj.mesh));
+    else
+        shapes = obj.mesh.parts(parts.triangles);
+    for (size_t i = 0; i < shapes.size(); i++) {
         Mesh own = mesh;
         bool visible = true;
-        if (part.material != OPAL_NONE) {
-            const ObjMaterial &used = obj.materials[part.material];
+        if (parts.materials[i] != OPAL_NONE) {
+            const ObjMaterial &used = obj.materials[parts.materials[i]];
             own.name += ": " + used.name;
             if (const MtlMaterial *material = find_material(materials, used.name))
                 add_surface(*material, options, own, visible);
-            else
+            else if (!options.own_bsdf)
                 warn(fmt::format("{}: no material '{}' in the libraries: its triangles are grey, diffuse ({})",
-                                 used.place.text(), used.name, part.triangles.size()));
+                                 used.place.text(), used.name, shapes[i].triangles.size()));
         }
         if (!visible)
             continue;
-        own.shape = parts.size() == 1 ? std::move(obj.mesh) : obj.mesh.part(part.triangles);
+        own.shape = std::move(shapes[i]);
         meshes.push_back(std::move(own));
     }
     return meshes;

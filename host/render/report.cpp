@@ -56,6 +56,7 @@ nlohmann::json RenderReport::json() const {
     nlohmann::json j;
     j["scene"] = scene.file.string();
     j["dialect"] = name_of(scene.dialect);
+    j["definitions"] = scene.definitions;
     j["device"] = device.name;
     j["driver"] = device.driver;
     j["lanes"] = lanes;
@@ -157,7 +158,7 @@ std::vector<std::string> film_warnings(const RenderReport &render) {
     if (s.samples > 0 && s.mean_rgb == std::array<double, 3>{} && asks_lights && has_light(render.scene))
         lines.push_back(
             fmt::format("{}: the image is black, although the scene has lights: none of {} samples found light",
-                        render.scene.file.string(), s.samples));
+                        render.scene.place.text(), s.samples));
     if (s.empty_pixels == 0)
         return lines;
     const size_t pixels = film.count.size();

@@ -12,6 +12,7 @@
 #include "shared/types.h"
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -96,12 +97,14 @@ struct SceneDescription {
     std::vector<Light> lights;                // beside the meshes that emit
     std::string integrator_type = "path_mis"; // as written, e.g. path_tracer_recursive; path_mis where there is none
     Dialect dialect = Dialect::upstream;
+    std::map<std::string, std::string> definitions; // the values that stand for $name in the file
     Strategy strategy;
     bool normals_signed = false;
     SimpleLight simple_light;
     double visibility_length = 1; // integrator av: how far it looks
     unsigned spp = 1;
     bool sample_count_given = false;
+    SourcePlace place;         // of the <scene>
     SourcePlace sampler_place; // of the <sampler>, else of the <scene>
 };
 

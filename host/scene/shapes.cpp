@@ -39,33 +39,65 @@ TriangleMesh TriangleMesh::moved(const Transform &by) const {
     return mesh;
 }
 
-TriangleMesh TriangleMesh::part(const std::vector<size_t> &indices) const {
-    TriangleMesh part;
-    std::vector<unsigned> new_positions(positions.size(), OPAL_NONE), new_normals(normals.size(), OPAL_NONE),
-        new_uvs(uvs.size(), OPAL_NONE);
-    // Renumbers an index in the order of first use, and copies what it names.
-    const auto renumber = [](unsigned &index, const auto &from, auto &to, std::vector<unsigned> &renumbered) {
+namespace {
+
+// The entries of an array that one part after another uses, renumbered in the order of their first use.
+template <class Entry> class Renumbering {
+public:
+    explicit Renumbering(const std::vector<Entry> &all) : all_(all), renumbered_(all.size(), {OPAL_NONE, 0}) {}
+
+    void begin_part() {
+        part_++;
+        used_.clear();
+    }
+    void renumber(unsigned &index) {
         if (index == OPAL_NONE)
             return;
-        if (renumbered[index] == OPAL_NONE) {
-            renumbered[index] = unsigned(to.size());
-            to.push_back(from[index]);
+        auto &[number, part] = renumbered_[index];
+        if (part != part_) {
+            number = unsigned(used_.size());
+            part = part_;
+            used_.push_back(all_[index]);
         }
-        index = renumbered[index];
-    };
-    for (size_t index : indices) {
-        std::array<Corner, 3> &triangle = part.triangles.emplace_back(triangles[index]);
-        for (Corner &corner : triangle) {
-            renumber(corner.position, positions, part.positions, new_positions);
-            renumber(corner.normal, normals, part.normals, new_normals);
-        }
-        if (!uv_corners.empty())
-            for (unsigned &corner : part.uv_corners.emplace_back(uv_corners[index]))
-                renumber(corner, uvs, part.uvs, new_uvs);
+        index = number;
     }
-    if (part.uvs.empty())
-        part.uv_corners.clear();
-    return part;
+    std::vector<Entry> used() const { return used_; }
+
+private:
+    const std::vector<Entry> &all_;
+    std::vector<std::pair<unsigned, size_t>> renumbered_; // the new index, and the part that it holds for
+    size_t part_ = 0;
+    std::vector<Entry> used_; // by the present part
+};
+
+} // namespace
+
+std::vector<TriangleMesh> TriangleMesh::parts(const std::vector<std::vector<size_t>> &lists) const {
+    std::vector<TriangleMesh> meshes;
+    Renumbering of_positions(positions);
+    Renumbering of_normals(normals);
+    Renumbering of_uvs(uvs);
+    for (const std::vector<size_t> &list : lists) {
+        of_positions.begin_part();
+        of_normals.begin_part();
+        of_uvs.begin_part();
+        TriangleMesh &mesh = meshes.emplace_back();
+        for (size_t index : list) {
+            for (Corner &corner : mesh.triangles.emplace_back(triangles[index])) {
+                of_positions.renumber(corner.position);
+                of_normals.renumber(corner.normal);
+            }
+            if (!uv_corners.empty())
+                for (unsigned &corner : mesh.uv_corners.emplace_back(uv_corners[index]))
+                    of_uvs.renumber(corner);
+        }
+        mesh.positions = of_positions.used();
+        mesh.normals = of_normals.used();
+        mesh.uvs = of_uvs.used();
+        if (mesh.uvs.empty())
+            mesh.uv_corners = {};
+    }
+    return meshes;
 }
 
 std::string TriangleMesh::text() const {

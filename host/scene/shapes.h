@@ -37,8 +37,8 @@ struct TriangleMesh {
 
     Extent extent() const; // of the positions that triangles use
     TriangleMesh moved(const Transform &by) const;
-    // The mesh of some of the triangles, by their indices, with what these use; in that order.
-    TriangleMesh part(const std::vector<size_t> &indices) const;
+    // A mesh for each list of triangles, which are given by their indices, in that order and with what they use.
+    std::vector<TriangleMesh> parts(const std::vector<std::vector<size_t>> &lists) const;
     std::string text() const; // for people: "12 triangles"
 };
 

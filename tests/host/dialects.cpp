@@ -142,6 +142,8 @@ TEST_CASE_METHOD(DialectFixture, "a pointlight has an intensity, and defaults", 
     CHECK(point("").power == Color{sphere, sphere, sphere});
     CHECK_THAT(error_of([&] { point("<color name='radiance' value='1 -2 3'/>"); }),
                Catch::EndsWith("property 'radiance': must not be negative"));
+    CHECK_THAT(error_of([&] { point("<color name='radiance' value='1 1 1'/><color name='power' value='1 1 1'/>"); }),
+               Catch::EndsWith("property 'power': stands beside 'radiance', which says it already"));
 }
 
 TEST_CASE_METHOD(DialectFixture, "tags and properties by other names", "[dialects]") {

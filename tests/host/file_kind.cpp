@@ -75,6 +75,7 @@ TEST_CASE("files are told by their bytes, whatever their names", "[file_kind]") 
         {"{ \"asset\" : { \"version\" : \"2.0\" } }", "a glTF scene", FileKind::other},
         {"{ \"a\": 1 }", "JSON", FileKind::text},
         {"solid cube\n facet normal 0 0 1\n", "an STL mesh", FileKind::other},
+        {"solid\nendsolid\n", "an STL mesh", FileKind::other},
         {binary_stl(2), "a binary STL mesh", FileKind::other},
         {"\x1f\x8b\x08"s, "compressed by gzip", FileKind::other},
         {"PK\3\4\x14"s, "a zip archive", FileKind::other},
@@ -90,7 +91,10 @@ TEST_CASE("files are told by their bytes, whatever their names", "[file_kind]") 
          FileKind::mitsuba_scene},
         {"<scene version='0.6.0'><default name='spp' value='4'/></scene>", "a scene of Mitsuba",
          FileKind::mitsuba_scene},
+        {"<scene version='3.5.0'><sensor type='perspective'/></scene>", "a scene of Mitsuba", FileKind::mitsuba_scene},
         {"<scene version='1.0'><mesh type='obj'/></scene>", "a scene", FileKind::scene},
+        {"<scene version=\"1\"><shape type='obj'/></scene>", "a scene", FileKind::scene},
+        {"<scene version='3.0.0'><mesh type='obj'/></scene>", "a scene", FileKind::scene},
         {"\xef\xbb\xbf<scene><shape type='sphere'/></scene>", "a scene", FileKind::scene},
         {"<test type='ttest'/>", "a scene", FileKind::scene},
         {"# Blender MTL\n\nnewmtl red\n", "a material library (MTL)", FileKind::mtl},
@@ -114,9 +118,9 @@ TEST_CASE("files are told by their bytes, whatever their names", "[file_kind]") 
 
 TEST_CASE_METHOD(KindFixture, "the error says what the file is and how to convert it", "[file_kind]") {
     CHECK_THAT(error_in("ply\nformat ascii 1.0\n"),
-               Catch::StartsWith("is a PLY mesh, not an OBJ file; convert it: assimp export FILE NEW.obj"));
+               Catch::StartsWith("is a PLY mesh, not an OBJ file; convert it: assimp export " + file() + " NEW.obj"));
     CHECK(error_in("\x1f\x8b\x08"s, FileKind::scene) ==
-          "is compressed by gzip, not a scene; unpack it: gzip -dc FILE > NEW");
+          "is compressed by gzip, not a scene; unpack it: gzip -dc " + file() + " > NEW");
     CHECK_THAT(error_in(obj_text, FileKind::scene), Catch::StartsWith("is a Wavefront OBJ mesh, not a scene; "));
     CHECK_THAT(error_in("<scene/>", FileKind::obj), Catch::StartsWith("is a scene, not an OBJ file; "));
     CHECK(error_in(obj_text, FileKind::obj).empty());

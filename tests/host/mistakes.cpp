@@ -198,7 +198,7 @@ TEST_CASE_METHOD(MistakesFixture, "a number too near to 0 for a double is 0", "[
     CHECK_THAT(error_of([&] { near_clip("1e400"); }), Catch::Contains("is not a finite number"));
 }
 
-// 300 changes of scenes: bytes, tags left out or doubled, attributes left out.
+// 500 changes of scenes: bytes, tags left out or doubled, attributes left out.
 TEST_CASE_METHOD(MistakesFixture, "mutated scenes load or fail", "[mistakes]") {
     scratch.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     const std::string scene =
@@ -222,7 +222,7 @@ TEST_CASE_METHOD(MistakesFixture, "mutated scenes load or fail", "[mistakes]") {
         return std::pair(start, std::min(text.find(last, start + 1), text.size() - 1) - start + 1);
     };
     size_t loaded = 0, failed = 0;
-    for (int i = 0; i < 300; i++) {
+    for (int i = 0; i < 500; i++) {
         std::string text = scene;
         for (size_t changes = 1 + below(3); changes > 0; changes--)
             switch (below(6)) {

@@ -110,8 +110,15 @@ TEST_CASE_METHOD(MtlFixture, "textures: options before and behind a name, which 
     CHECK(texture("-type sphere t.png").file == "t.png");
     const auto told = warnings_of([&] { CHECK(texture("-foo 3 t.png").file == "t.png"); });
     CHECK(told.size() == 1);
-    CHECK(error_in("newmtl a\nmap_Kd -s 2\n") == ":2:1: 'map_Kd' names no file");
     CHECK(error_in("newmtl a\nmap_Kd -clamp\n") == ":2:1: option '-clamp' of 'map_Kd' lacks its value");
+}
+
+TEST_CASE_METHOD(MtlFixture, "a texture without a file is told and absent", "[mtl]") {
+    for (const char *statement : {"map_Kd\n", "map_Kd -s 2\n", "map_Kd \"\"\n"}) {
+        const auto told = warnings_of([&] { CHECK(one(statement).textures.empty()); });
+        REQUIRE(told.size() == 1);
+        CHECK(told[0] == file() + ":2:1: 'map_Kd' names no file: it is ignored");
+    }
 }
 
 TEST_CASE_METHOD(MtlFixture, "malformed statements fail at their place", "[mtl]") {
@@ -120,7 +127,6 @@ TEST_CASE_METHOD(MtlFixture, "malformed statements fail at their place", "[mtl]"
     CHECK(error_in("newmtl a\nKd -1\n") == ":2:1: 'Kd' must not be negative");
     CHECK(error_in("newmtl a\nNs nan\n") == ":2:4: 'nan' is not a finite number in single precision");
     CHECK(error_in("newmtl a\nd 1.5\n") == ":2:1: 'd' must be between 0 and 1");
-    CHECK(error_in("newmtl\n") == ":1:1: newmtl lacks a name");
     CHECK(error_in("Kd 1\nnewmtl a\n") == ":1:1: 'Kd' before the first newmtl");
     CHECK_THAT(error_in(triangles), Catch::StartsWith(": is a Wavefront OBJ mesh, not a material library"));
 }
@@ -196,7 +202,24 @@ TEST_CASE_METHOD(MtlFixture, "materials become the BSDFs that Opal has", "[mtl]"
     CHECK(blender_surface("d 0\n").is_invisible);
     CHECK(blender_surface("d 0.5\n").lacking.size() == 1);
     CHECK(blender_surface("map_Kd t.png\nmap_Bump n.png\n").lacking ==
-          std::vector<std::string>{"map_bump n.png", "map_kd t.png"});
+          std::vector<std::string>{"map_Bump n.png", "map_Kd t.png"});
+}
+
+TEST_CASE_METHOD(MtlFixture, "numbers beyond what a BSDF can hold become the nearest that it can", "[mtl]") {
+    // A lobe whose share single precision cannot tell from 0.
+    for (const char *ks : {"1e-45", "1e-9"})
+        CHECK(surface_of(one(fmt::format("Kd 0.5\nKs {}\nNs 10\n", ks))).bsdf.children.at(0).is<bsdf_diffuse_record>());
+    const Bsdf sharp = surface_of(one("Kd 0.5\nKs 0.3\nNs 1e30\n")).bsdf.children.at(0);
+    CHECK(sharp.as<bsdf_phong_record>().n.value == 1e5f);
+    CHECK(principled_of(one("Ni 0\n")).ior == 1.5);
+    CHECK(principled_of(one("Pr 1e30\n")).roughness == 1);
+    CHECK(blender("Pr 2\n").roughness == 1);
+}
+
+TEST_CASE_METHOD(MtlFixture, "glass is smooth unless a statement says how rough it is", "[mtl]") {
+    CHECK(surface_of(one("Kd 1\nTf 1\nillum 4\n")).lacking.empty());
+    CHECK(surface_of(one("Kd 1\nTf 1\nillum 4\nKs 1\nNs 20\n")).lacking.size() == 1);
+    CHECK(surface_of(one("Kd 1\nTf 1\nPr 0.5\n")).lacking.size() == 1);
 }
 
 TEST_CASE_METHOD(MtlFixture, "no material reflects more than all light", "[mtl]") {
@@ -245,6 +268,39 @@ TEST_CASE_METHOD(MtlFixture, "a mesh for each material, by names with blanks in 
         CHECK(part.bsdf.is<bsdf_diffuse_record>());
         CHECK_FALSE(part.radiance);
     }
+}
+
+TEST_CASE_METHOD(MtlFixture, "Blender's material without a name is found", "[mtl]") {
+    scratch.write("a.mtl", "newmtl \nKd 0.25\n");
+    const auto path = scratch.write("a.obj", triangles + "mtllib a.mtl\nusemtl \nf 1 2 3\n");
+    const auto meshes = meshes_by_material(read_obj(path, {}), path, {}, {});
+    CHECK(meshes.at(0).bsdf.children.at(0).as<bsdf_diffuse_record>().albedo.value[0] == 0.25f);
+}
+
+TEST_CASE_METHOD(MtlFixture, "comments behind the names of materials and libraries, and quotes, are no part of them",
+                 "[mtl]") {
+    scratch.write("b c.mtl", "newmtl red # warm\nKd 0.25\nnewmtl blue # 1\nKd 0\nnewmtl blue # 2\nKd 0.5\n");
+    for (const char *library : {"b c.mtl # all of them", "\"b c.mtl\"", "\"b c.mtl\"\t# quoted"})
+        for (const char *name : {"red", "red # warm", "red # warm # 2"}) {
+            INFO(library << " " << name);
+            const auto path =
+                scratch.write("a.obj", triangles + "mtllib " + library + "\nusemtl " + name + "\nf 1 2 3\n");
+            const auto told = warnings_of([&] {
+                const auto meshes = meshes_by_material(read_obj(path, {}), path, {}, {});
+                CHECK(meshes.at(0).bsdf.children.at(0).as<bsdf_diffuse_record>().albedo.value[0] == 0.25f);
+            });
+            CHECK(told.empty());
+        }
+    const auto path = scratch.write("a.obj", triangles + "mtllib b c.mtl\nusemtl blue # 2\nf 1 2 3\n");
+    const auto meshes = meshes_by_material(read_obj(path, {}), path, {}, {});
+    CHECK(meshes.at(0).bsdf.children.at(0).as<bsdf_diffuse_record>().albedo.value[0] == 0.5f);
+    scratch.write("a.obj", triangles + "mtllib b c.mtl\nusemtl blue # 3\nf 1 2 3\n");
+    CHECK(warnings_of([&] { meshes_by_material(read_obj(path, {}), path, {}, {}); }).size() == 1);
+}
+
+TEST_CASE_METHOD(MtlFixture, "a material that is missing is no matter where the mesh has a bsdf of its own", "[mtl]") {
+    const auto path = scratch.write("a.obj", triangles + "usemtl a\nf 1 2 3\n");
+    CHECK(warnings_of([&] { meshes_by_material(read_obj(path, {}), path, {}, {.own_bsdf = true}); }).empty());
 }
 
 TEST_CASE_METHOD(MtlFixture, "each mesh keeps the texture coordinates of its triangles", "[mtl]") {

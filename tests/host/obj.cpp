@@ -602,9 +602,9 @@ TEST_CASE_METHOD(ObjFixture, "texture coordinates are kept where triangles have 
     const TriangleMesh moved = mesh.moved(Transform::scale({2, 2, 2}));
     CHECK(moved.uvs == mesh.uvs);
     CHECK(moved.uv_corners == mesh.uv_corners);
-    CHECK(mesh.part({1}).uvs == mesh.uvs);
-    CHECK(mesh.part({1}).uv_corners == decltype(mesh.uv_corners){{0, 1, OPAL_NONE}});
-    CHECK(mesh.part({0}).uv_corners.empty());
+    CHECK(mesh.parts({{1}}).at(0).uvs == mesh.uvs);
+    CHECK(mesh.parts({{1}}).at(0).uv_corners == decltype(mesh.uv_corners){{0, 1, OPAL_NONE}});
+    CHECK(mesh.parts({{0}}).at(0).uv_corners.empty());
     const TriangleMesh unused = read(square + "vt 0 0\nf 1 2 3\n");
     CHECK(unused.uvs.empty());
     CHECK(unused.uv_corners.empty());

@@ -67,6 +67,7 @@ TEST_CASE("tags within each other are counted", "[xml]") {
 TEST_CASE("one root and nothing beside it", "[xml]") {
     CHECK(error_in("") == "a.xml:1:1: holds no <scene>");
     CHECK(error_in("<!-- nothing -->") == "a.xml:1:1: holds no <scene>");
+    CHECK(error_in("\n1 2 3\n") == "a.xml:2:1: is no XML: it holds no tags");
     CHECK(error_in("<scene/>\n<scene/>") == "a.xml:2:1: a second root <scene>; a file holds one");
     CHECK_THAT(error_in("<scene/>\n junk"), Catch::StartsWith("a.xml:2:2: text between the tags"));
     CHECK(error_in("<scene/>\n<!-- fine --> \n").empty());

@@ -85,7 +85,7 @@ TEST_CASE("A black image is told where the scene has lights, and what lets nothi
         CHECK(outcome.exit_code == 0);
         return outcome.err;
     };
-    const std::string black = "plain.xml: the image is black, although the scene has lights: none of 1152 samples";
+    const std::string black = "plain.xml:1:1: the image is black, although the scene has lights: none of 1152 samples";
     const std::string beside = render("5 -5 3", "50 -5 3", "--quiet");
     CHECK_THAT(beside, Catch::Contains(black) && !Catch::Contains("nearClip"));
     const std::string behind = render("5 -5 3", "5 -5 -3", "--quiet");
@@ -104,6 +104,21 @@ TEST_CASE("Size, samples and output are the command line's where given", "[rende
     REQUIRE(run_shell(folder.render("-o out.exr --no-png --width 8 --spp 1 --lanes 1")).exit_code == 0);
     CHECK(read_exr(folder.scratch / "out.exr").height == 4); // the scene's aspect
     CHECK(folder.files() == 2);
+}
+
+TEST_CASE("The values of -D stand in the image and in the JSON", "[render_command]") {
+    const SceneFolder folder;
+    std::string text = read_text(folder.scratch / "plain.xml");
+    REQUIRE(text.find("value=\"24\"") != std::string::npos);
+    text.replace(text.find("value=\"24\""), 10, "value=\"$w\"");
+    folder.scratch.write("plain.xml", text);
+    REQUIRE(run_shell(folder.render("-Dw=16 -o out.exr --json out.json --no-png --spp 1")).exit_code == 0);
+    const Image image = read_exr(folder.scratch / "out.exr");
+    CHECK((image.width == 16 && image.metadata.at("opal.definitions") == "{\"w\":\"16\"}"));
+    CHECK(nlohmann::json::parse(read_text(folder.scratch / "out.json"))["definitions"]["w"] == "16");
+    CHECK(run_shell(folder.render("-D w=16 -D v=1")).exit_code == exit_usage);
+    CHECK(run_shell(folder.render("-D w")).exit_code == exit_usage);
+    CHECK(run_shell(folder.render("")).exit_code == exit_failed);
 }
 
 TEST_CASE("What cannot be rendered or written is refused, and nothing is left behind", "[render_command]") {

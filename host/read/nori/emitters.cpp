@@ -48,6 +48,8 @@ void read_intensity(Properties &properties, emitter_point &light) {
     const std::optional<Color> intensity = properties.color("radiance");
     if (!intensity)
         return;
+    if (properties.color("power"))
+        properties.mistake_at("power", "stands beside 'radiance', which says it already");
     const bool is_good = *std::min_element(intensity->begin(), intensity->end()) >= 0;
     properties.check(is_good, "radiance", "must not be negative");
     for (size_t i = 0; is_good && i < intensity->size(); i++)

@@ -75,7 +75,7 @@ SceneDescription parse_scene(const XmlNode &node, const ParseContext &context) {
     scene.file = node.place().file;
     const DialectChoice dialect = choose_dialect(node, context);
     scene.dialect = dialect.dialect;
-    scene.sampler_place = node.place();
+    scene.place = scene.sampler_place = node.place();
     apply_integrator(scene.strategy, find_integrator(scene.integrator_type));
     const auto camera = properties.child("camera");
     if (!camera)
@@ -111,7 +111,11 @@ SceneDescription load_scene(const std::filesystem::path &file, const LoadOptions
     if (root.tag() != "scene")
         root.fail(unknown_name("root", root.tag(), {"scene", "test"}));
     Mistakes mistakes;
-    SceneDescription scene = parse_scene(root, context_for(file, options, mistakes));
+    const ParseContext context = context_for(file, options, mistakes);
+    const Definitions definitions = document.define(options.definitions, context.handler());
+    mistakes.throw_all(); // what lacks its value would be told twice
+    SceneDescription scene = parse_scene(root, context);
+    scene.definitions = definitions;
     mistakes.throw_all();
     return scene;
 }
