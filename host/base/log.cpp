@@ -14,6 +14,15 @@ bool quiet_chosen = false, verbose_chosen = false;
 std::vector<std::string> kept_warnings;
 int first_output_error = 0;
 
+std::FILE *results = stdout;
+
+void write(const std::string &text, std::FILE *stream) {
+    errno = 0;
+    const bool taken = std::fwrite(text.data(), 1, text.size(), stream) == text.size() && std::fflush(stream) == 0;
+    if (!taken && stream == stdout && first_output_error == 0)
+        first_output_error = errno ? errno : EIO;
+}
+
 void say(const char *prefix, const char *line) { std::fprintf(stderr, "%s%s\n", prefix, line); }
 
 } // namespace
@@ -49,12 +58,11 @@ void tell_error(const char *line) { say("error: ", line); }
 
 void show(const std::string &text) { std::fputs(text.c_str(), stderr); }
 
-void print_text(const std::string &text) {
-    errno = 0;
-    const bool taken = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-    if (!taken && first_output_error == 0)
-        first_output_error = errno ? errno : EIO;
-}
+void free_stdout() { results = stderr; }
+
+void print_data(const std::string &text) { write(text, stdout); }
+
+void print_text(const std::string &text) { write(text, results); }
 
 int output_error() { return first_output_error; }
 

@@ -7,10 +7,12 @@ namespace opal {
 
 Command bench_command();
 Command compare_command();
+Command completion_command();
 Command devices_command();
 Command extremes_command();
 Command help_command();
 Command inspect_command();
+Command man_command();
 Command probe_platform_command(); // hidden, in ask_driver.cpp; see device/ask_driver.h
 Command render_command();
 Command scene_for_command();

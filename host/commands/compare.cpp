@@ -3,6 +3,7 @@
 #include "base/json.h"
 #include "base/log.h"
 #include "commands/commands.h"
+#include "commands/json_file.h"
 #include "compare/evidence.h"
 #include "image/metrics.h"
 
@@ -145,8 +146,7 @@ int run(const Options &o) {
         check_writable(o.out);
         check_writable(std::filesystem::path(o.out).replace_extension(".png"));
     }
-    if (!o.json.empty())
-        check_writable(o.json);
+    prepare_json(o.json);
     const Image image = read_exr(o.image), reference = read_exr(o.reference);
     check_comparable(o, image, reference);
     for (const auto &[file, read] : {std::pair(o.image, &image), std::pair(o.reference, &reference)})
@@ -178,8 +178,7 @@ int run(const Options &o) {
     }
     if (!o.out.empty())
         write_map(o.out, image, reference, test ? &*test : nullptr);
-    if (!o.json.empty())
-        write_safely(o.json, dump(report, 2) + "\n");
+    write_json(o.json, "compare", report);
     return 0;
 }
 
@@ -197,7 +196,7 @@ Command compare_command() {
                      .help = "EXR for the difference A - B (and z.R, z.G, z.B of its tiles); a PNG goes beside it, "
                              "red where A is brighter, blue where B is",
                      .type = "FILE"},
-                    {.flags = "--json", .target = &o->json, .help = "File for the figures", .type = "FILE"},
+                    json_row(o->json, "the figures"),
                     {.flags = "--significance",
                      .target = &o->significance,
                      .help = "Level of the test that both have one mean",

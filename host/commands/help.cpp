@@ -54,21 +54,6 @@ std::string two_columns(const std::string &left, const std::string &text) {
     return page;
 }
 
-std::string usage_of(const Command &command, const std::string &path) {
-    std::string usage = "opal " + path;
-    if (!command.subcommands.empty())
-        return usage + " COMMAND";
-    bool has_flags = false;
-    for (const OptionRow &row : command.options)
-        has_flags = has_flags || !is_positional(row);
-    usage += has_flags ? " [OPTIONS]" : "";
-    for (const OptionRow &row : command.options)
-        if (is_positional(row))
-            usage += fmt::format(fmt::runtime(row.required ? " {}{}" : " [{}]{}"), row.flags,
-                                 std::holds_alternative<std::vector<std::string> *>(row.target) ? "..." : "");
-    return usage;
-}
-
 std::string listed(const std::string &heading, const std::vector<std::string> &examples) {
     std::string text = examples.empty() ? "" : heading;
     for (const std::string &example : examples)

@@ -80,11 +80,25 @@ OptionRow cl_dir_row(std::string &cl_dir) {
     return {.flags = "--cl-dir", .target = &cl_dir, .help = "Read the kernels from this copy of cl/", .type = "FOLDER"};
 }
 
-OptionRow device_row(std::string &device) {
+OptionRow device_row(DeviceOptions &device) {
     return {.flags = "--device",
-            .target = &device,
+            .target = &device.name,
             .help = "An index of `opal devices`, cpu, gpu, or part of a name [the first GPU, else the CPU]",
             .type = "DEVICE"};
+}
+
+OptionRow threads_row(DeviceOptions &device) {
+    return {.flags = "--threads",
+            .target = &device.threads,
+            .help = "Threads that a CPU device may use [all that `opal devices` shows as units]",
+            .check = Range{1u, 65535u}};
+}
+
+DevicePick choose_device(const DeviceOptions &device) {
+    DevicePick pick = pick_device(device.name, list_devices());
+    if (device.threads)
+        pick.info = with_threads(pick.info, device.threads);
+    return pick;
 }
 
 SceneDescription load_scene(const SceneOptions &options) {
@@ -94,8 +108,8 @@ SceneDescription load_scene(const SceneOptions &options) {
     return scene;
 }
 
-KernelChoice choose_kernel(const std::string &device, const SceneDescription &scene) {
-    KernelChoice choice{pick_device(device, list_devices()), {}};
+KernelChoice choose_kernel(const DeviceOptions &device, const SceneDescription &scene) {
+    KernelChoice choice{choose_device(device), {}};
     choice.build.lanes = lanes_for(choice.pick.info, scene.strategy.lanes, scene.strategy.math);
     choice.build.math = scene.strategy.math;
     return choice;

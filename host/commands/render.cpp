@@ -6,6 +6,7 @@
 #include "base/signals.h"
 #include "base/units.h"
 #include "commands/commands.h"
+#include "commands/json_file.h"
 #include "commands/options.h"
 #include "flatten/flat_scene.h"
 #include "flatten/scene_warnings.h"
@@ -24,7 +25,8 @@ namespace {
 
 struct Options {
     SceneOptions scene;
-    std::string device, out, json, layers, time, time_limit, target_error, strategy;
+    DeviceOptions device;
+    std::string out, json, layers, time, time_limit, target_error, strategy;
     unsigned spp = 0, width = 0, height = 0; // 0: the scene's
     unsigned seed = 0;
     bool no_png = false, quiet = false, verbose = false;
@@ -83,8 +85,9 @@ void warn_of_fast_functions(const Device &device, const BuildOptions &build, con
 struct Request {
     SceneDescription scene;
     StopRule rule;
-    unsigned spp;                         // 0: the rule alone decides
-    std::filesystem::path exr, png, json; // empty: not written
+    unsigned spp;                   // 0: the rule alone decides
+    std::filesystem::path exr, png; // empty: not written
+    std::string json;               // for write_json
     double load_seconds;
 };
 
@@ -99,13 +102,14 @@ Request prepare(const Options &o) {
     request.spp = request.rule.given() && !o.spp ? 0 : scene.spp;
     request.exr = o.out.empty() ? scene.file.stem().replace_extension(".exr") : std::filesystem::path(o.out);
     request.json = o.json;
+    prepare_json(o.json);
     const std::filesystem::path png = std::filesystem::path(request.exr).replace_extension(".png");
     if (png == request.exr)
         throw Error(fmt::format("--output {}: names the EXR file; the PNG goes beside it", request.exr.string()));
     const bool beside_device = std::filesystem::exists(request.exr) && !std::filesystem::is_regular_file(request.exr);
     if (!o.no_png && !beside_device) // none beside /dev/null
         request.png = png;
-    for (const std::filesystem::path &file : {request.exr, request.png, request.json})
+    for (const std::filesystem::path &file : {request.exr, request.png})
         if (!file.empty())
             check_writable(file);
     request.load_seconds = load.seconds();
@@ -138,8 +142,7 @@ int report(const Request &request, const RenderedFilm &rendered, const RenderRep
     if (!request.png.empty())
         write_png(image, request.png);
     json["seconds"]["write"] = write.seconds();
-    if (!request.json.empty())
-        write_safely(request.json, dump(json, 2) + "\n");
+    write_json(request.json, "render", json);
 
     info(render.text());
     if (request.rule.given()) {
@@ -188,65 +191,65 @@ int run(const Options &o) {
 
 Command render_command() {
     auto o = std::make_shared<Options>();
-    return {
-        .name = "render",
-        .help = "Render a scene to an EXR and a PNG",
-        .options = append(
-            scene_rows(o->scene),
-            {device_row(o->device),
-             {.flags = "-o,--output",
-              .target = &o->out,
-              .help = "EXR file; the PNG goes beside it [the scene's name, in the current folder]",
-              .type = "FILE"},
-             {.flags = "--no-png", .target = &o->no_png, .help = "Write no PNG"},
-             {.flags = "--spp",
-              .target = &o->spp,
-              .help = "Samples per pixel [the scene's sampleCount]",
-              .check = Range{1u, 0xffffffffu}},
-             {.flags = "--time",
-              .target = &o->time,
-              .help = "Stop after this much kernel time (30s, 2min); --spp is then the most",
-              .check = Accepts{parse_seconds},
-              .type = "TIME"},
-             {.flags = "--target-error",
-              .target = &o->target_error,
-              .help = "Stop when the relative standard error of the image's mean luminance is below this (1%)\n"
-                      "  A pilot of other samples decides how many, so that the image stays unbiased",
-              .check = Accepts{parse_fraction},
-              .type = "ERROR",
-              .excludes = "--time"},
-             {.flags = "--time-limit",
-              .target = &o->time_limit,
-              .help = "Stop rendering this long after the start of the process, by the wall clock: loading and "
-                      "compiling count, writing comes after; --spp is then the most",
-              .check = Accepts{parse_seconds},
-              .type = "TIME",
-              .excludes = "--target-error"},
-             {.flags = "--strategy",
-              .target = &o->strategy,
-              .help = "auto: short pilots find which way to sample light costs least on this scene and device",
-              .check = OneOf<std::string>{{"auto"}}},
-             {.flags = "--width",
-              .target = &o->width,
-              .help = "Pixels; one of both keeps the aspect [the scene's]",
-              .check = Range{1, 65535}},
-             {.flags = "--height", .target = &o->height, .help = "Pixels [the scene's]", .check = Range{1, 65535}},
-             {.flags = "--seed",
-              .target = &o->seed,
-              .help = "Of the random numbers; the same seed gives the same image"},
-             {.flags = "--json", .target = &o->json, .help = "File for the statistics of the render", .type = "FILE"},
-             {.flags = "--layers",
-              .target = &o->layers,
-              .help = "More layers for the EXR: variance (of each pixel's mean)",
-              .check = OneOf<std::string>{{"variance"}}},
-             {.flags = "--quiet", .target = &o->quiet, .help = "Print nothing but warnings and errors"},
-             {.flags = "--verbose",
-              .target = &o->verbose,
-              .help = "Print what the driver remarks on the kernels, too",
-              .excludes = "--quiet"}}),
-        .examples = {"opal render scenes/cbox_mis.xml --spp 64 -o box.exr",
-                     "opal scenes/mixed_room.xml --time 30s --width 400"},
-        .run = [o] { return run(*o); }};
+    return {.name = "render",
+            .help = "Render a scene to an EXR and a PNG",
+            .options = append(
+                scene_rows(o->scene),
+                {device_row(o->device),
+                 threads_row(o->device),
+                 {.flags = "-o,--output",
+                  .target = &o->out,
+                  .help = "EXR file; the PNG goes beside it [the scene's name, in the current folder]",
+                  .type = "FILE"},
+                 {.flags = "--no-png", .target = &o->no_png, .help = "Write no PNG"},
+                 {.flags = "--spp",
+                  .target = &o->spp,
+                  .help = "Samples per pixel [the scene's sampleCount]",
+                  .check = Range{1u, 0xffffffffu}},
+                 {.flags = "--time",
+                  .target = &o->time,
+                  .help = "Stop after this much kernel time (30s, 2min); --spp is then the most",
+                  .check = Accepts{parse_seconds},
+                  .type = "TIME"},
+                 {.flags = "--target-error",
+                  .target = &o->target_error,
+                  .help = "Stop when the relative standard error of the image's mean luminance is below this (1%)\n"
+                          "  A pilot of other samples decides how many, so that the image stays unbiased",
+                  .check = Accepts{parse_fraction},
+                  .type = "ERROR",
+                  .excludes = "--time"},
+                 {.flags = "--time-limit",
+                  .target = &o->time_limit,
+                  .help = "Stop rendering this long after the start of the process, by the wall clock: loading and "
+                          "compiling count, writing comes after; --spp is then the most",
+                  .check = Accepts{parse_seconds},
+                  .type = "TIME",
+                  .excludes = "--target-error"},
+                 {.flags = "--strategy",
+                  .target = &o->strategy,
+                  .help = "auto: short pilots find which way to sample light costs least on this scene and device",
+                  .check = OneOf<std::string>{{"auto"}}},
+                 {.flags = "--width",
+                  .target = &o->width,
+                  .help = "Pixels; one of both keeps the aspect [the scene's]",
+                  .check = Range{1, 65535}},
+                 {.flags = "--height", .target = &o->height, .help = "Pixels [the scene's]", .check = Range{1, 65535}},
+                 {.flags = "--seed",
+                  .target = &o->seed,
+                  .help = "Of the random numbers; the same seed gives the same image"},
+                 json_row(o->json, "the statistics of the render"),
+                 {.flags = "--layers",
+                  .target = &o->layers,
+                  .help = "More layers for the EXR: variance (of each pixel's mean)",
+                  .check = OneOf<std::string>{{"variance"}}},
+                 {.flags = "--quiet", .target = &o->quiet, .help = "Print nothing but warnings and errors"},
+                 {.flags = "--verbose",
+                  .target = &o->verbose,
+                  .help = "Print what the driver remarks on the kernels, too",
+                  .excludes = "--quiet"}}),
+            .examples = {"opal render scenes/cbox_mis.xml --spp 64 -o box.exr",
+                         "opal scenes/mixed_room.xml --time 30s --width 400"},
+            .run = [o] { return run(*o); }};
 }
 
 } // namespace opal

@@ -125,6 +125,21 @@ std::string meaning_of(const OptionRow &row) {
 
 bool is_strategy(const OptionRow &row) { return row.group && std::string(row.group) == strategy_group; }
 
+std::string usage_of(const Command &command, const std::string &path) {
+    std::string usage = "opal " + path;
+    if (!command.subcommands.empty())
+        return usage + " COMMAND";
+    bool has_flags = false;
+    for (const OptionRow &row : command.options)
+        has_flags = has_flags || !is_positional(row);
+    usage += has_flags ? " [OPTIONS]" : "";
+    for (const OptionRow &row : command.options)
+        if (is_positional(row))
+            usage += fmt::format(fmt::runtime(row.required ? " {}{}" : " [{}]{}"), row.flags,
+                                 std::holds_alternative<std::vector<std::string> *>(row.target) ? "..." : "");
+    return usage;
+}
+
 std::vector<std::string> visible_names(const std::vector<Command> &commands) {
     std::vector<std::string> names;
     for (const Command &command : commands)

@@ -15,6 +15,8 @@ std::string flags_text(const OptionRow &row); // "-o, --output FILE"
 // The help of a row with its range and its default, which come from what the parser checks and sets.
 std::string meaning_of(const OptionRow &row);
 
+std::string usage_of(const Command &command, const std::string &path); // "opal bench rays [OPTIONS] SCENE.xml"
+
 std::vector<std::string> visible_names(const std::vector<Command> &commands); // without hidden ones
 // The rows of strategy_group, of the first command that has some.
 std::vector<OptionRow> strategy_options_of(const std::vector<Command> &commands);

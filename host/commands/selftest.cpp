@@ -6,6 +6,7 @@
 #include "base/process.h"
 #include "base/table.h"
 #include "commands/commands.h"
+#include "commands/json_file.h"
 #include "commands/options.h"
 #include "device/ask_driver.h"
 #include "device/info_json.h"
@@ -25,7 +26,8 @@ namespace {
 const std::string line_mark = "opal-finding "; // drivers print to stdout too
 
 struct Options {
-    std::string device, json, cl_dir;
+    DeviceOptions device;
+    std::string json, cl_dir;
     std::vector<std::string> groups; // none: all
     bool full = false, quick = false;
     double time_limit = 0;
@@ -204,9 +206,8 @@ nlohmann::json SelftestReport::json() const {
 }
 
 int run(const Options &o) {
-    if (!o.json.empty())
-        check_writable(o.json);
-    const DevicePick pick = pick_device(o.device, list_devices());
+    prepare_json(o.json);
+    const DevicePick pick = choose_device(o.device);
     info(fmt::format("device  {}", text_of(pick)));
     const std::vector<Variant> variants = variants_of(pick.info);
     std::vector<Job> jobs;
@@ -219,8 +220,7 @@ int run(const Options &o) {
     const SelftestReport report{pick.info, variants, jobs,
                                 std::chrono::duration<double>(ChildProcess::Clock::now() - begun).count()};
     print_text(report.text());
-    if (!o.json.empty())
-        write_safely(o.json, dump(report.json(), 2) + "\n");
+    write_json(o.json, "selftest", report.json());
     return report.passed() ? exit_done : exit_check_failed;
 }
 
@@ -277,7 +277,7 @@ Command selftest_command() {
                          .help = "Seconds for each group of checks [120, or 1200 with --full]",
                          .check = Positive{}},
                         {.flags = "--seed", .target = &o->seed, .help = "Of the random numbers"},
-                        {.flags = "--json", .target = &o->json, .help = "File for the findings", .type = "FILE"},
+                        json_row(o->json, "the findings"),
                         cl_dir_row(o->cl_dir)},
             .examples = {"opal selftest", "opal selftest --full --device gpu --json selftest.json"},
             .run = [o] { return run(*o); }};

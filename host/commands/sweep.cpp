@@ -33,7 +33,7 @@ struct Options {
     SceneOptions scene;
     std::vector<std::string> strategies, math;
     std::vector<unsigned> spp = {4, 16, 64};
-    unsigned replicates = 5, seed = 0, reference_spp = 0, width = 0;
+    unsigned replicates = 5, seed = 0, reference_spp = 0, width = 0, threads = 0;
     std::vector<std::string> devices;
     std::string reference, budget, out, clock = "kernel";
     bool quiet = false;
@@ -78,7 +78,9 @@ SweepRecord fresh_record(const Options &o, const SceneDescription &scene, const 
     r.dialect = name_of(scene.dialect);
     r.definitions = scene.definitions;
     for (const DevicePick &d : devices)
-        r.devices.push_back({d.info.index, d.info.name, d.info.driver});
+        r.devices.push_back({d.info.index,
+                             d.info.threads ? fmt::format("{}, threads: {}", d.info.name, d.info.threads) : d.info.name,
+                             d.info.driver});
     r.reference_file = o.reference;
     r.clock = o.clock;
     r.width = scene.camera.width;
@@ -107,6 +109,8 @@ std::vector<DevicePick> pick_devices(const Options &o) {
     std::vector<DevicePick> picks;
     for (const std::string &wanted : o.devices.empty() ? std::vector<std::string>{""} : o.devices) {
         picks.push_back(pick_device(wanted, known));
+        if (o.threads)
+            picks.back().info = with_threads(picks.back().info, o.threads);
         for (size_t i = 0; i + 1 < picks.size(); i++)
             if (picks[i].info.index == picks.back().info.index)
                 throw Error(fmt::format("--device: '{}' and '{}' are the same device, {}", o.devices[i], wanted,
@@ -248,6 +252,10 @@ Command sweep_command() {
                       "[the first GPU, else the CPU]",
               .type = "DEVICE,...",
               .comma_separated = true},
+             {.flags = "--threads",
+              .target = &o->threads,
+              .help = "Threads that CPU devices may use [all that `opal devices` shows as units]",
+              .check = Range{1u, 65535u}},
              {.flags = "--strategies",
               .target = &o->strategies,
               .help = "course, all, or lists axis=value,... after the scene; the first is the baseline [course]\n"

@@ -6,6 +6,7 @@
 #include "base/progress.h"
 #include "base/signals.h"
 #include "commands/commands.h"
+#include "commands/json_file.h"
 #include "commands/options.h"
 #include "compare/agreement.h"
 #include "flatten/features.h"
@@ -23,7 +24,8 @@ constexpr unsigned strata = 1024; // of the stratified sampler, which repeats af
 
 struct Options {
     SceneOptions scene;
-    std::string device, strategies, out, json;
+    DeviceOptions device;
+    std::string strategies, out, json;
     double budget = 60, significance = 1e-3;
     int width = 0, height = 0;
     unsigned seed = 0;
@@ -140,10 +142,9 @@ int run(const Options &o) {
     const std::filesystem::path folder = o.out.empty() ? "verify_" + scene.file.stem().string() : o.out;
     if (!std::filesystem::is_directory(folder))
         check_writable(folder);
-    if (!o.json.empty())
-        check_writable(o.json);
+    prepare_json(o.json);
 
-    const DevicePick pick = pick_device(o.device, list_devices());
+    const DevicePick pick = choose_device(o.device);
     info(fmt::format("verify  {}: {} strategies, {} x {} pixels, {} in all, seed {}", scene.file.string(),
                      strategies.size(), scene.camera.width, scene.camera.height, duration_text(o.budget), o.seed));
     info(fmt::format("device  {}", text_of(pick)));
@@ -178,8 +179,7 @@ int run(const Options &o) {
     print_text(text_of(agreement, renders));
     if (!agreement.holds() || !o.out.empty())
         leave_evidence(folder, agreement, renders, report);
-    if (!o.json.empty())
-        write_safely(o.json, dump(report, 2) + "\n");
+    write_json(o.json, "verify", report);
     return agreement.holds() ? exit_done : exit_check_failed;
 }
 
@@ -193,6 +193,7 @@ Command verify_command() {
         .options = append(
             scene_rows(o->scene),
             {device_row(o->device),
+             threads_row(o->device),
              {.flags = "--strategies",
               .target = &o->strategies,
               .help = "Those to test, 'lighting=mis,mis=power;lighting=emitter' [all that make sense here, or where "
@@ -218,7 +219,7 @@ Command verify_command() {
               .target = &o->out,
               .help = "Folder for the evidence [verify_SCENE, on disagreement only]",
               .type = "FOLDER"},
-             {.flags = "--json", .target = &o->json, .help = "File for the results", .type = "FILE"},
+             json_row(o->json, "the results"),
              {.flags = "--quiet", .target = &o->quiet, .help = "Print nothing but the verdict, warnings and errors"}}),
         .examples = {"opal verify scenes/cbox_mis.xml",
                      "opal verify scenes/mixed_room.xml --budget 5min --json verify.json"},

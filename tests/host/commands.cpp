@@ -95,6 +95,36 @@ TEST_CASE("version says what the binary is made of", "[commands]") {
         CHECK_THAT(outcome.out, Catch::Contains(part));
 }
 
+TEST_CASE("The manual page and the completions name every command and flag", "[commands]") {
+    const Outcome man = run_shell(opal_binary + " man"), bash = run_shell(opal_binary + " completion bash"),
+                  zsh = run_shell(opal_binary + " completion zsh");
+    CHECK((man.exit_code == 0 && bash.exit_code == 0 && zsh.exit_code == 0));
+    for (const char *name : {"render", "selftest", "completion"})
+        for (const Outcome *text : {&man, &bash, &zsh})
+            CHECK_THAT(text->out, Catch::Contains(name));
+    CHECK_THAT(man.out, Catch::Contains(".SH EXIT STATUS") && Catch::Contains("\\-\\-emitter\\-choice"));
+    const ScratchFolder folder;
+    const std::string file = folder.write("opal.bash", bash.out);
+    const auto completed = [&](const std::string &words) { // the last word is being typed
+        const Outcome outcome = run_shell("bash -c '. " + file + "; COMP_WORDS=(" + words +
+                                          "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _opal; echo \"${COMPREPLY[*]}\"'");
+        return outcome.out;
+    };
+    CHECK(completed("opal rend") == "render\n");
+    CHECK(completed("opal render --tar") == "--target-error\n");
+    CHECK(completed("opal bench ra") == "rays\n");
+    CHECK(completed("opal bench rays a.xml --kind bo") == "bounce\n");
+    CHECK(completed("opal a.xml --lighting em") == "emitter\n");
+}
+
+TEST_CASE("The manual page is right roff", "[commands]") {
+    const ScratchFolder folder;
+    const std::string page = folder.write("opal.1", run_shell(opal_binary + " man").out);
+    const Outcome outcome = run_shell("command -v groff >/dev/null || exit 0; groff -man -Tutf8 -ww " + page);
+    CHECK(outcome.exit_code == 0);
+    CHECK(outcome.err.empty());
+}
+
 TEST_CASE("inspect tells what a scene holds and why each feature is in or out", "[commands]") {
     const ScratchFolder folder;
     const std::string inspect = opal_binary + " inspect " + folder.write("scene.xml", scene_text).string();

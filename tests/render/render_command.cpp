@@ -121,6 +121,19 @@ TEST_CASE("The values of -D stand in the image and in the JSON", "[render_comman
     CHECK(run_shell(folder.render("")).exit_code == exit_failed);
 }
 
+TEST_CASE("--threads bounds the threads of a CPU device, and changes no bit", "[render_command]") {
+    const SceneFolder folder;
+    const Outcome one = run_shell(folder.render("--threads 1 -o one.exr --no-png"));
+    INFO(one.err);
+    REQUIRE(one.exit_code == 0);
+    CHECK_THAT(one.err, Catch::Contains("1 thread"));
+    REQUIRE(run_shell(folder.render("-o all.exr --no-png")).exit_code == 0);
+    CHECK(read_exr(folder.scratch / "one.exr").get("G").values == read_exr(folder.scratch / "all.exr").get("G").values);
+    const Outcome many = run_shell(folder.render("--threads 60000"));
+    CHECK(many.exit_code == exit_usage);
+    CHECK_THAT(many.err, Catch::Contains("--threads: 60000 is out of range; "));
+}
+
 TEST_CASE("What cannot be rendered or written is refused, and nothing is left behind", "[render_command]") {
     const SceneFolder folder;
     check_refused(folder, "--spp 0", "--spp", exit_usage);
