@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <mutex>
 
 #include <fcntl.h>
 
@@ -14,16 +15,32 @@ bool quiet_chosen = false, verbose_chosen = false;
 std::vector<std::string> kept_warnings;
 int first_output_error = 0;
 
+std::mutex streams;      // bars are told by threads of their own
+bool bar_stands = false; // on stderr, without a line end
+
+// `streams` must be locked.
+void clear_bar() {
+    if (bar_stands)
+        std::fputs(clear_line, stderr);
+    bar_stands = false;
+}
+
 std::FILE *results = stdout;
 
 void write(const std::string &text, std::FILE *stream) {
+    const std::lock_guard lock(streams);
+    clear_bar();
     errno = 0;
     const bool taken = std::fwrite(text.data(), 1, text.size(), stream) == text.size() && std::fflush(stream) == 0;
     if (!taken && stream == stdout && first_output_error == 0)
         first_output_error = errno ? errno : EIO;
 }
 
-void say(const char *prefix, const char *line) { std::fprintf(stderr, "%s%s\n", prefix, line); }
+void say(const char *prefix, const char *line) {
+    const std::lock_guard lock(streams);
+    clear_bar();
+    std::fprintf(stderr, "%s%s\n", prefix, line);
+}
 
 } // namespace
 
@@ -56,7 +73,11 @@ const std::vector<std::string> &warnings() { return kept_warnings; }
 
 void tell_error(const char *line) { say("error: ", line); }
 
-void show(const std::string &text) { std::fputs(text.c_str(), stderr); }
+void show(const std::string &text) {
+    const std::lock_guard lock(streams);
+    std::fputs(text.c_str(), stderr);
+    bar_stands = !text.ends_with(clear_line) && !text.ends_with('\n');
+}
 
 void free_stdout() { results = stderr; }
 

@@ -17,8 +17,10 @@ void detail(const std::string &text); // printed only with --verbose
 void note(const std::string &line);   // prints "note: ...": harmless, and worth knowing once; silent with --quiet
 void warn(const std::string &line);   // prints "warning: ..."
 const std::vector<std::string> &warnings();
-void tell_error(const char *line);  // prints "error: ..."; the process then ends
-void show(const std::string &text); // prints to stderr without a line end: a progress bar
+void tell_error(const char *line); // prints "error: ..."; the process then ends
+// Prints to stderr without a line end: a progress bar. The next message or result takes its place.
+void show(const std::string &text);
+inline constexpr const char *clear_line = "\r\033[K"; // for a terminal: shown alone, it takes the bar away
 
 // A result, to stdout at once.
 void print_text(const std::string &text);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <unistd.h>
 
@@ -13,7 +14,17 @@ namespace opal {
 namespace {
 
 constexpr double bar_period = 0.1, line_period = 5, first_period = 1; // seconds
-constexpr const char *clear_line = "\r\033[K";
+std::atomic<int> running = 0;                                         // RunningProgress that live
+
+std::string share_text(double share, bool bar) {
+    std::string text = fmt::format("{:3.0f} %", std::floor(100 * share));
+    if (bar) {
+        constexpr int width = 30;
+        const int filled = static_cast<int>(share * width);
+        text += fmt::format(" [{:<{}}]", std::string(static_cast<size_t>(filled), '#'), width);
+    }
+    return text;
+}
 
 double since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -43,12 +54,7 @@ std::string count_text(double count) {
 std::string progress_line(const std::string &what, const std::string &unit, double done, double total, double seconds,
                           bool bar) {
     const double share = total > 0 ? std::clamp(done / total, 0.0, 1.0) : 1;
-    std::string line = fmt::format("{} {:3.0f} %", what, std::floor(100 * share));
-    if (bar) {
-        constexpr int width = 30;
-        const int filled = static_cast<int>(share * width);
-        line += fmt::format(" [{:<{}}]", std::string(static_cast<size_t>(filled), '#'), width);
-    }
+    std::string line = fmt::format("{} {}", what, share_text(share, bar));
     if (done > 0 && seconds > 0)
         line += fmt::format("  {} {}/s  {} left", count_text(done / seconds), unit,
                             duration_text(seconds * (total - done) / done));
@@ -72,12 +78,19 @@ void Progress::update(double done) {
     show(bar_ ? clear_line + line : line + "\n");
 }
 
-RunningSeconds::RunningSeconds(std::string what) {
-    if (!is_quiet())
+std::string running_line(const std::string &what, double seconds, std::optional<double> left, bool bar) {
+    if (!left)
+        return fmt::format("{:<7} {:.0f} s", what, seconds);
+    return fmt::format("{:<7} {}  {} left", what, share_text(seconds / (seconds + *left), bar), duration_text(*left));
+}
+
+RunningProgress::RunningProgress(std::string what) : start_(Clock::now()) {
+    if (running++ == 0 && !is_quiet())
         thread_ = std::thread([this, what = std::move(what)] { run(what); });
 }
 
-RunningSeconds::~RunningSeconds() {
+RunningProgress::~RunningProgress() {
+    running--;
     if (!thread_.joinable())
         return;
     {
@@ -88,14 +101,25 @@ RunningSeconds::~RunningSeconds() {
     thread_.join();
 }
 
-void RunningSeconds::run(const std::string &what) {
+void RunningProgress::expect(double seconds) {
+    const std::lock_guard lock(mutex_);
+    end_ = since(start_) + std::max(seconds, 0.0);
+}
+
+void RunningProgress::update(double done, double total) {
+    if (done > 0)
+        expect(since(start_) * (total - done) / done);
+}
+
+void RunningProgress::run(const std::string &what) {
     const bool bar = isatty(STDERR_FILENO);
-    const auto start = std::chrono::steady_clock::now();
     double next = first_period; // seconds since the start
     std::unique_lock lock(mutex_);
-    const auto wait = [&] { return std::chrono::duration<double>(next - since(start)); };
+    const auto wait = [&] { return std::chrono::duration<double>(next - since(start_)); };
     while (!ended_changed_.wait_for(lock, wait(), [&] { return ended_; })) {
-        const std::string line = fmt::format("{:<8}{:.0f} s", what, since(start));
+        const double seconds = since(start_);
+        const auto left = seconds < end_ ? std::optional(end_ - seconds) : std::nullopt;
+        const std::string line = running_line(what, seconds, left, bar);
         show(bar ? clear_line + line : line + "\n");
         next += bar ? first_period : line_period;
     }

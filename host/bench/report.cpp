@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace opal {
 
 namespace {
@@ -15,6 +17,13 @@ nlohmann::json spread_json(const Spread &s) {
 
 std::string spread_text(const Spread &s, double unit = 1) {
     return fmt::format("{:.4g} [{:.4g}, {:.4g}]", s.median / unit, s.least / unit, s.greatest / unit);
+}
+
+std::string share_text(const std::string &stage, const Spread &share) {
+    if (share.least > 0)
+        return fmt::format("{} {:.3g} % [{:.3g}, {:.3g}]", stage, 100 * share.median, 100 * share.least,
+                           100 * share.greatest);
+    return fmt::format("{} below what can be told (at most {:.3g} %)", stage, 100 * share.greatest);
 }
 
 } // namespace
@@ -113,13 +122,26 @@ nlohmann::json RaceFigures::json() const {
                    {"compile_seconds", race.compile_seconds}});
 }
 
+Spread share_of(const Race &twice) {
+    const auto share = [](double time) { return std::clamp(time - 1, 0.0, 1.0); };
+    return {share(twice.time.median), share(twice.time.least), share(twice.time.greatest)};
+}
+
+Spread TimeShares::shading() const {
+    const auto rest = [](double a, double b) { return std::max(1 - a - b, 0.0); };
+    return {rest(traversal.median, sampling.median), rest(traversal.greatest, sampling.greatest),
+            rest(traversal.least, sampling.least)};
+}
+
 std::string TimeShares::text() const {
-    return fmt::format("{:<28}{:.3g} % traversal, {:.3g} % random numbers, {:.3g} % shading and all else\n",
-                       "share of time", 100 * traversal, 100 * sampling, 100 * (1 - traversal - sampling));
+    return fmt::format("{:<28}{}, {}, {}\n", "share of time", share_text("traversal", traversal),
+                       share_text("random numbers", sampling), share_text("shading and all else", shading()));
 }
 
 nlohmann::json TimeShares::json() const {
-    return object({{"traversal", traversal}, {"sampling", sampling}, {"shading", 1 - traversal - sampling}});
+    return object({{"traversal", spread_json(traversal)},
+                   {"sampling", spread_json(sampling)},
+                   {"shading", spread_json(shading())}});
 }
 
 } // namespace opal

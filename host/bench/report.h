@@ -57,12 +57,15 @@ struct RaceFigures {
     nlohmann::json json() const;
 };
 
-// Where a render's time goes: a stage that is done twice adds its share.
+// The shares of a render's time, each from 0 to 1: a stage that is done twice adds its share. The range is that of the
+// rounds. A share whose range reaches 0 is below what can be told.
 struct TimeShares {
-    double traversal = 0, sampling = 0;
+    Spread traversal, sampling;
 
+    Spread shading() const; // and all else
     std::string text() const;
     nlohmann::json json() const;
 };
+Spread share_of(const Race &twice); // of the stage that the variant does twice
 
 } // namespace opal

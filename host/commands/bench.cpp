@@ -1,6 +1,7 @@
 // opal bench: how fast a scene's rays and paths are on this device.
 #include "base/json.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "base/table.h"
 #include "bench/report.h"
 #include "commands/commands.h"
@@ -76,6 +77,7 @@ int run_rays(const RayOptions &o) {
     const FlatScene flat = flatten(scene, build.lanes);
     const Device device = open_device(pick.info);
     const Sources sources = load_sources(o.scene.cl_dir);
+    RunningProgress progress("bench");
     RayBench bench(device, flat, build, sources);
 
     const BenchSubject subject{scene, flat, pick, build.lanes};
@@ -104,6 +106,7 @@ int run_rays(const RayOptions &o) {
             write_dumps(o, flat, set, figures.times);
         }
         print_text(figures.text());
+        progress.update(kind + 1, RAYS_KINDS);
     }
     report["compile_seconds"] = bench.compile_seconds();
     write_json(o.json, "bench rays", report);
@@ -179,6 +182,7 @@ int run_renders(const RenderBenchOptions &o) {
     const Sources sources = load_sources(o.scene.cl_dir);
     BuildOptions fresh = build;
     fresh.cache_salt = fmt::format("{}", std::chrono::system_clock::now().time_since_epoch().count());
+    RunningProgress progress("bench");
     RenderBench bench(device, flat, build, sources, o.seconds, o.rounds);
     const double cold = bench.compile_seconds(fresh), warm = bench.compile_seconds(fresh);
 
@@ -188,30 +192,34 @@ int run_renders(const RenderBenchOptions &o) {
     print_text(figures.text());
     nlohmann::json report = subject.json();
     report.update(figures.json());
+    std::vector<int> widths = {1, 4, 8, 16};
+    if (pick.info.type == "gpu") // renders with 1 lane only, and its compiler takes minutes for more
+        std::erase_if(widths, [&](int lanes) { return lanes > pick.info.native_lanes; });
+    const size_t races = 3 + widths.size();
+    size_t done = 0;
     const auto race = [&](const std::string &name, const FlatScene &variant, const BuildOptions &kernel) {
         const RaceFigures row{name, bench.race(variant, kernel)};
         print_text(row.text());
+        progress.update(double(++done), double(races));
         return row;
     };
-    const auto share_of = [&](const char *stage) {
+    const auto race_twice = [&](const char *stage) {
         BuildOptions twice = build;
         twice.repeat_stage = stage;
         const RaceFigures row = race(fmt::format("{} twice", stage), flat, twice);
         report["twice"][stage] = row.json();
-        return row.race.time.median - 1;
+        return row.race;
     };
     TimeShares shares;
-    shares.traversal = share_of("traversal");
-    shares.sampling = share_of("sampling");
+    shares.traversal = share_of(race_twice("traversal"));
+    shares.sampling = share_of(race_twice("sampling"));
     print_text(shares.text());
     report["share"] = shares.json();
-    for (int lanes : {1, 4, 8, 16}) {
-        if (pick.info.type == "gpu" && lanes > pick.info.native_lanes)
-            continue; // a GPU renders with 1 lane only, and its compiler takes minutes for more
+    for (int lanes : widths) {
         BuildOptions other = build;
         other.lanes = lanes;
         report["widths"][std::to_string(lanes)] =
-            race(fmt::format("{} lanes", lanes), flatten(scene, lanes), other).json();
+            race(fmt::format("{} lane{}", lanes, lanes == 1 ? "" : "s"), flatten(scene, lanes), other).json();
     }
     SceneDescription anything = scene;
     anything.strategy.specialise = false;

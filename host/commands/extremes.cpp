@@ -3,6 +3,7 @@
 #include "base/exit_code.h"
 #include "base/json.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "base/table.h"
 #include "commands/commands.h"
 #include "commands/json_file.h"
@@ -65,8 +66,14 @@ int run(ExtremesOptions o) {
                                     {"version", OPAL_VERSION},
                                     {"rows", nlohmann::json::array()}});
     bool kept = true;
+    const size_t stride = o.quick ? 3 : 1;
+    size_t done = 0, values = 0;
+    for (const extremes::StressRow *row : rows)
+        values += extremes::values_of(*row, stride).size();
+    RunningProgress progress("extremes");
     for (const extremes::StressRow *row : rows) {
-        results.push_back(extremes::run_stress(*row, device, o.settings, o.quick ? 3 : 1));
+        results.push_back(extremes::run_stress(*row, device, o.settings, stride,
+                                               [&] { progress.update(double(++done), double(values)); }));
         print_text(extremes::table_of(results.back()));
         report["rows"].push_back(extremes::json_of(results.back()));
         kept = kept && results.back().kept;

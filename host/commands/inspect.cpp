@@ -1,5 +1,6 @@
 #include "base/json.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "base/units.h"
 #include "bench/renders.h"
 #include "commands/commands.h"
@@ -196,6 +197,7 @@ void print_savings(const InspectOptions &options, const SceneDescription &scene)
     const auto [pick, build] = choose_kernel(options.device, scene);
     const FlatScene flat = flatten(scene, build.lanes);
     const Sources sources = load_sources(options.scene.cl_dir);
+    RunningProgress progress("inspect");
     RenderBench bench(open_device(pick.info), flat, build, sources, 0.5, 5);
     print("\nsaved by what is left out ({}, {} lanes; time with it over time without, 5 rounds)\n", pick.info.name,
           build.lanes);

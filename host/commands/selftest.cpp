@@ -4,6 +4,7 @@
 #include "base/json.h"
 #include "base/log.h"
 #include "base/process.h"
+#include "base/progress.h"
 #include "base/table.h"
 #include "commands/commands.h"
 #include "commands/json_file.h"
@@ -92,9 +93,12 @@ void run_jobs(std::vector<Job> &jobs, const std::vector<Variant> &variants, cons
     };
     const double limit = o.time_limit > 0 ? o.time_limit : o.full ? 1200 : 120;
     std::deque<Running> running;
+    RunningProgress progress("selftest");
+    size_t done = 0;
     const auto finish_first = [&] {
         finish(*running.front().job, running.front().process, running.front().deadline, limit);
         running.pop_front();
+        progress.update(double(++done), double(jobs.size()));
     };
     for (Job &job : jobs) {
         if (running.size() == 2)

@@ -2,6 +2,7 @@
 #include "base/exit_code.h"
 #include "base/json.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "commands/commands.h"
 #include "commands/json_file.h"
 #include "commands/options.h"
@@ -67,7 +68,10 @@ int run(const Options &o) {
     options.overrides = o.scene.overrides;
     info(fmt::format("device  {}, {} lanes", text_of(pick), options.build.lanes));
 
-    size_t cases = 0, rejected = 0;
+    size_t cases = 0, rejected = 0, planned = 0;
+    for (const TestDescription &test : tests)
+        planned += count_cases(test);
+    RunningProgress progress("test");
     nlohmann::json report = {
         {"device", pick.info.name}, {"driver", pick.info.driver}, {"lanes", options.build.lanes}, {"seed", o.seed}};
     for (size_t i = 0; i < tests.size(); i++) {
@@ -76,10 +80,11 @@ int run(const Options &o) {
         test.significance_level = o.significance > 0 ? o.significance : test.significance_level;
         print("{} ({}, level {:g})\n", o.files[i], test.type, test.significance_level);
         nlohmann::json results = nlohmann::json::array();
-        for (const ConformanceCase &c :
-             run_test(test, device, options, [](const ConformanceCase &c) { print("{}\n", text_of(c)); })) {
+        for (const ConformanceCase &c : run_test(test, device, options, [&](const ConformanceCase &c) {
+                 print("{}\n", text_of(c));
+                 progress.update(double(++cases), double(planned));
+             })) {
             results.push_back(json_of(c));
-            cases++;
             rejected += !c.passed;
         }
         report["tests"].push_back(object({{"file", o.files[i]},

@@ -102,7 +102,8 @@ std::vector<StrategyRender> render_all(const Options &o, const std::vector<Named
                                        const std::vector<FlatScene> &scenes, const Device &device, const Clock &clock) {
     const Sources sources = load_sources(o.scene.cl_dir);
     std::vector<StrategyRender> renders;
-    Progress progress("verify", double(strategies.size()), "strategies");
+    RunningProgress progress("verify");
+    progress.expect(clock.left());
     for (size_t i = 0; i < strategies.size() && !interrupted(); i++) {
         const Strategy &s = strategies[i].strategy;
         RenderOptions options;
@@ -117,7 +118,6 @@ std::vector<StrategyRender> render_all(const Options &o, const std::vector<Named
         const Film film = renderer.film();
         renders.push_back({strategies[i], image_of(film, true), double(renderer.next_sample()), film.invalid,
                            renderer.kernel_seconds()});
-        progress.update(double(i + 1));
     }
     return renders;
 }

@@ -27,9 +27,7 @@ public:
         : test_(test), device_(device), options_(options), on_case_(on_case) {}
 
     std::vector<ConformanceCase> run() {
-        const double cases =
-            test_.type == "chi2test" ? double(test_.bsdfs.size()) * test_.test_count : double(test_.references.size());
-        level_ = stats::sidak_level(test_.significance_level, cases);
+        level_ = stats::sidak_level(test_.significance_level, double(count_cases(test_)));
         for (const SceneDescription &scene : test_.scenes)
             mean_of_scene(scene);
         if (!test_.bsdfs.empty())
@@ -133,6 +131,10 @@ private:
 };
 
 } // namespace
+
+size_t count_cases(const TestDescription &test) {
+    return test.type == "chi2test" ? test.bsdfs.size() * size_t(test.test_count) : test.references.size();
+}
 
 std::vector<ConformanceCase> run_test(const TestDescription &test, const Device &device,
                                       const ConformanceOptions &options,

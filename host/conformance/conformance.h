@@ -28,6 +28,8 @@ struct ConformanceCase {
     bool passed = false;
 };
 
+size_t count_cases(const TestDescription &test); // means or histograms
+
 // Judges every case of the test at its significance level, split over the cases (Sidak). Calls on_case after each.
 std::vector<ConformanceCase> run_test(const TestDescription &test, const Device &device,
                                       const ConformanceOptions &options,

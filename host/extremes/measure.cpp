@@ -139,21 +139,29 @@ void find_working_range(StressResult &s) {
 
 } // namespace
 
-StressResult run_stress(const StressRow &row, const Device &device, const StressSettings &settings, size_t stride) {
+std::vector<double> values_of(const StressRow &row, size_t stride) {
+    std::vector<double> values;
+    for (size_t i = 0; i < row.values.size(); i++)
+        if (const double value = row.values[i]; i % stride == 0 || i + 1 == row.values.size() || value == row.start ||
+                                                value == row.promised_from || value == row.promised_to)
+            values.push_back(value);
+    return values;
+}
+
+StressResult run_stress(const StressRow &row, const Device &device, const StressSettings &settings, size_t stride,
+                        const std::function<void()> &on_value) {
     StressResult s{&row, {}, 0, 0, true};
     std::optional<double> invariant;
     if (row.invariant)
         invariant =
             statistics_of(render(row, row.picture(row.start), row.start, device, settings, MathMode::double_precision))
                 .mean_luminance;
-    for (size_t i = 0; i < row.values.size(); i++) {
-        const double value = row.values[i];
-        if (i % stride && i + 1 < row.values.size() && value != row.start && value != row.promised_from &&
-            value != row.promised_to)
-            continue;
+    for (const double value : values_of(row, stride)) {
         s.points.push_back(
             measure(row, value, device, settings, row.truth ? std::optional(row.truth(value)) : invariant));
         s.kept = s.kept && (!promised(row, value) || s.points.back().fault.empty());
+        if (on_value)
+            on_value();
     }
     find_working_range(s);
     return s;

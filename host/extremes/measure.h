@@ -6,6 +6,8 @@
 #include "extremes/rows.h"
 #include "film/film.h"
 
+#include <functional>
+
 namespace opal::extremes {
 
 // The measurements at one value of a row.
@@ -31,9 +33,12 @@ struct StressResult {
     bool kept;       // no value of the promised range has a fault
 };
 
-// Runs the row on `device` with every `stride`th value, the last one, the start and the ends of the promised range.
-// Throws the renderer's Error.
-StressResult run_stress(const StressRow &row, const Device &device, const StressSettings &settings, size_t stride);
+// Every `stride`th value of the row, the last one, the start and the ends of the promised range.
+std::vector<double> values_of(const StressRow &row, size_t stride);
+
+// Runs the row on `device` with values_of(row, stride); calls on_value after each. Throws the renderer's Error.
+StressResult run_stress(const StressRow &row, const Device &device, const StressSettings &settings, size_t stride,
+                        const std::function<void()> &on_value = {});
 
 // The working range and the faults next to it: "correct from 1e-05 to 1e+06; at 1e-06 energy off by 0.0031".
 std::string breaking_point(const StressResult &result);

@@ -107,7 +107,8 @@ public:
 
     // Whether mesh `i`, which emits, lights neither another mesh nor itself, and is dark from the camera.
     bool faces_away(size_t i) const {
-        return std::visit([&](const auto &shape) { return faces_away(shape, i); }, scene_.meshes[i].shape);
+        return !scene_.meshes[i].emits_on_both_sides &&
+               std::visit([&](const auto &shape) { return faces_away(shape, i); }, scene_.meshes[i].shape);
     }
 
 private:

@@ -77,7 +77,7 @@ bool contains(const std::vector<std::string> &names, const std::string &name) {
 
 class MtlReader {
 public:
-    MtlReader(std::string name, std::string_view text) : name_(std::move(name)), text_(text) {}
+    MtlReader(std::string name, std::string_view text) : text_(text), lines_(std::move(name), text) {}
 
     std::vector<MtlMaterial> run() {
         const std::string_view first = text_.substr(0, text_.find('\n'));
@@ -95,8 +95,8 @@ public:
     }
 
 private:
-    std::string name_;
     std::string_view text_;
+    TextLines lines_;
     std::string_view reading_; // the word that an error is about
     bool by_blender_ = false, in_material_ = false;
     std::optional<double> tr_; // 1 - d as the current material's Tr says it
@@ -105,7 +105,7 @@ private:
     size_t unknown_count_ = 0;
     std::string unknown_, unknown_place_;
 
-    SourcePlace place_of(std::string_view word) const { return place_in(name_, text_, word.data() - text_.data()); }
+    SourcePlace place_of(std::string_view word) const { return lines_.place(word.data() - text_.data()); }
     [[noreturn]] void fail(const std::string &message) const {
         throw Error(place_of(reading_).text() + ": " + message);
     }

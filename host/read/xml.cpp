@@ -20,6 +20,13 @@ void tell(const MistakeHandler &mistake, const SourcePlace &place, const std::st
     mistake(place, message);
 }
 
+// Takes a byte order mark, which would shift every offset, from the text.
+std::string_view without_mark(std::string &text) {
+    if (text.starts_with("\xef\xbb\xbf"))
+        text.erase(0, 3);
+    return text;
+}
+
 bool is_text(pugi::xml_node node) { return node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata; }
 
 // The child elements of a node. Text that is not blank is a mistake.
@@ -60,6 +67,19 @@ SourcePlace place_in(const std::string &file, std::string_view text, ptrdiff_t o
     return {file, int(line) + 1, int(column) + 1};
 }
 
+TextLines::TextLines(std::string file, std::string_view text) : file_(std::move(file)), text_(text), starts_{0} {
+    for (size_t at = text.find('\n'); at != text.npos; at = text.find('\n', at + 1))
+        starts_.push_back(at + 1);
+}
+
+SourcePlace TextLines::place(ptrdiff_t offset) const {
+    const size_t end = size_t(std::clamp<ptrdiff_t>(offset, 0, ptrdiff_t(text_.size())));
+    const auto line = std::upper_bound(starts_.begin(), starts_.end(), end) - 1;
+    SourcePlace place = place_in(file_, text_.substr(*line), ptrdiff_t(end - *line));
+    place.line = int(line - starts_.begin()) + 1;
+    return place;
+}
+
 SourcePlace XmlNode::place() const { return document_->place(node_.offset_debug() - 1); }
 
 std::vector<XmlNode> XmlNode::children(const MistakeHandler &mistake) const {
@@ -92,9 +112,7 @@ XmlDocument::XmlDocument(const std::filesystem::path &file)
     : XmlDocument(file, read_text_file(file, FileKind::scene)) {}
 
 XmlDocument::XmlDocument(const std::filesystem::path &file, std::string text)
-    : file_(file.string()), text_(std::move(text)) {
-    if (text_.starts_with("\xef\xbb\xbf"))
-        text_.erase(0, 3); // a byte order mark would shift every offset
+    : text_(std::move(text)), lines_(file.string(), without_mark(text_)) {
     // Parsed as a fragment: pugixml would skip text and further roots beside the root.
     pugi::xml_parse_result result = document_.load_buffer(
         text_.data(), text_.size(), pugi::parse_default | pugi::parse_fragment, pugi::encoding_utf8);

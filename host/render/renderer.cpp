@@ -73,7 +73,7 @@ Renderer::Renderer(const Device &device, const FlatScene &scene, const RenderOpt
         std::clamp<unsigned long long>(bytes / sample_bytes / pixels_, 1, 1ull * max_samples_a_chunk * max_chunks));
     check_room(device, pixels_ * (sample_bytes * buffer_spp_ + 4ull * FILM_PLANES + 4), "the film and its samples");
 
-    const RunningSeconds compiling("compile");
+    const RunningProgress compiling("compile");
     const cl::Program program = build_program(device, program_text(scene.features, options.build, *options.sources),
                                               options.build, &compile_seconds_);
     on_device_->scene = upload_scene(device, scene);

@@ -180,6 +180,13 @@ nlohmann::json json_of(const SweepSummary &summary) {
     return list;
 }
 
+std::string error_text(double x) {
+    if (!(x > 0))
+        return fmt::format("{:g}", x);
+    const int exponent = int(std::floor(std::log10(x) + 1e-9));
+    return fmt::format("{:.2g}e{}", x / std::pow(10, exponent), exponent);
+}
+
 std::string csv(const SweepSummary &summary) {
     std::string text = "strategy,spp,replicates,seconds,mse,mse_low,mse_high,rel_mse,rel_mse_low,rel_mse_high\n";
     for (const StrategySummary &s : summary.strategies)

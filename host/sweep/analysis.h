@@ -51,6 +51,7 @@ struct SweepSummary {
 };
 
 SweepSummary summarise(const SweepRecord &record);
+std::string error_text(double rel_mse);       // "1e-2", "3.4e-3"
 std::string csv(const SweepSummary &summary); // one line for each point
 // An interval is [estimate, low, high]; infinite and unknown numbers are null.
 nlohmann::json json_of(const SweepSummary &summary);

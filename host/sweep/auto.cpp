@@ -1,6 +1,8 @@
 #include "sweep/auto.h"
 
 #include "base/json.h"
+#include "base/progress.h"
+#include "sweep/analysis.h"
 
 #include <fmt/format.h>
 
@@ -12,9 +14,11 @@ AutoChoice choose_strategy(const SceneDescription &scene, const Device &device, 
     constexpr double pilot_seconds = 0.25;
     const std::vector<Candidate> candidates = parse_strategies(scene, {"course"}, {});
     std::vector<Pilot> pilots;
+    RunningProgress progress("pilots");
     for (const Candidate &c : candidates) {
         CompiledStrategy strategy(device, c, sources, device.info.type == "cpu" ? Clock::cpu : Clock::kernel);
         pilots.push_back(run_pilot(strategy, seed, pilot_seconds));
+        progress.update(double(pilots.size()), double(candidates.size()));
     }
     const std::vector<double> costs = pilot_costs(pilots);
     AutoChoice choice;
@@ -29,18 +33,20 @@ AutoChoice choose_strategy(const SceneDescription &scene, const Device &device, 
 
 std::string AutoChoice::text() const {
     std::string lines;
-    for (size_t i = 0; i < candidates.size(); i++)
-        lines += fmt::format("{}auto    {}: {:.3g} times the best's time to equal error ({} pilot samples a pixel){}",
-                             i ? "\n" : "", candidates[i].label, candidates[i].relative_cost, candidates[i].pilot_spp,
-                             i == chosen ? ", taken" : "");
-    return lines;
+    for (size_t i = 0; i < candidates.size(); i++) {
+        const std::string time = i == chosen ? fmt::format("the fastest to relMSE {}, taken", error_text(ranking_level))
+                                             : fmt::format("{:.3g} times longer", candidates[i].relative_time);
+        lines += fmt::format("auto    {}: {} (by a pilot of {} samples a pixel)\n", candidates[i].label, time,
+                             candidates[i].pilot_spp);
+    }
+    return lines + "auto    pilots estimate these times; opal sweep measures them";
 }
 
 nlohmann::json AutoChoice::json() const {
     nlohmann::json j = object({{"chosen", candidates[chosen].name}, {"candidates", nlohmann::json::array()}});
     for (const Row &row : candidates)
         j["candidates"].push_back(
-            object({{"strategy", row.name}, {"relative_cost", row.relative_cost}, {"pilot_spp", row.pilot_spp}}));
+            object({{"strategy", row.name}, {"relative_time", row.relative_time}, {"pilot_spp", row.pilot_spp}}));
     return j;
 }
 

@@ -1,4 +1,5 @@
-// --strategy auto: the cheapest way to sample light on this scene and device, found by short pilots.
+// --strategy auto: the fastest way to sample light on this scene and device, found by short pilots. Their figures are
+// estimates of what a sweep measures (sweep/analysis.h: seconds_to).
 #pragma once
 
 #include "sweep/measure.h"
@@ -10,7 +11,7 @@ namespace opal {
 struct AutoChoice {
     struct Row {
         std::string name, label; // as in Candidate
-        double relative_cost;    // its time to equal error over the chosen one's
+        double relative_time;    // seconds to relMSE ranking_level over those of the best one, as a sweep has it
         unsigned pilot_spp;
     };
     std::vector<Row> candidates;

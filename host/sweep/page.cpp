@@ -72,14 +72,6 @@ std::string number_text(double x) {
     return fmt::format("{:.{}f}", x, x < 0.1 ? 4 : x < 1 ? 3 : x < 10 ? 2 : x < 100 ? 1 : 0);
 }
 
-// A relMSE: "1e-2", "3.4e-3"
-std::string error_text(double x) {
-    if (!(x > 0))
-        return fmt::format("{:g}", x);
-    const int exponent = int(std::floor(std::log10(x) + 1e-9));
-    return fmt::format("{:.2g}e{}", x / std::pow(10, exponent), exponent);
-}
-
 // The level of each strategy's test of bias, which gives a level of 1 % over all strategies (Bonferroni).
 double bias_level(const SweepSummary &summary) { return 0.01 / double(summary.strategies.size()); }
 

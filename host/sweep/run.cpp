@@ -2,13 +2,16 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "sweep/reference.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <optional>
 
 namespace opal {
 
@@ -24,23 +27,30 @@ class SweepRunner {
 public:
     SweepRunner(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates,
                 SweepRecord &record)
-        : plan_(plan), device_(device), candidates_(candidates), record_(record) {}
+        : plan_(plan), device_(device), candidates_(candidates), record_(record), compiled_(candidates.size()) {}
 
     void measure() {
+        progress_.emplace("pilots");
         run_pilots();
         best_ = &*std::min_element(candidates_.begin(), candidates_.end(), [&](const Candidate &a, const Candidate &b) {
             return record_of(a).pilot_cost < record_of(b).pilot_cost;
         });
         fit_budget();
+        progress_.emplace("sweep");
+        expect();
         make_reference();
+        expect();
         for (unsigned round = 1; round <= record_.replicates; round++)
             run_round(round);
     }
 
     void render_equal_time_images() {
+        progress_.emplace("images");
         read_reference();
-        for (const Candidate &c : candidates_)
-            render_equal_time_image(c);
+        for (size_t i = 0; i < candidates_.size(); i++) {
+            render_equal_time_image(candidates_[i]);
+            progress_->update(double(i + 1), double(candidates_.size()));
+        }
     }
 
 private:
@@ -61,6 +71,7 @@ private:
             StrategyRecord &s = record_of(c);
             CompiledStrategy strategy = compile(c);
             all.push_back(run_pilot(strategy, plan_.seed, std::fmin(max_pilot_seconds, share)));
+            progress_->update(double(all.size()), double(candidates_.size()));
             s.independent = c.scene.strategy[AXIS_sampler] == CHOICE_sampler_independent;
             s.compile_seconds = strategy.compile_seconds();
             s.lanes = strategy.lanes();
@@ -102,6 +113,27 @@ private:
         return seconds;
     }
 
+    // Tells the progress bar how long the rest takes: renders, by the pilots and the time on the wall that a second of
+    // theirs has taken so far, with the writing of results; compilations; and the images at equal time.
+    void expect() {
+        double compiling = 0, fastest = INFINITY;
+        for (size_t i = 0; i < candidates_.size(); i++) {
+            const StrategyRecord &s = record_of(candidates_[i]);
+            compiling += compiled_[i] ? compiled_[i]->compile_seconds() : 2 * s.compile_seconds;
+            fastest = std::fmin(fastest, s.pilot_seconds_a_sample);
+        }
+        const double images = double(candidates_.size()) * record_.spp.back() * fastest;
+        const double pace = planned_done_ > 0 ? wall_done_ / planned_done_ : 1;
+        progress_->expect(compiling + pace * (seconds_left() + images));
+    }
+
+    // Counts a render into the pace. begun: before it; planned: its seconds by the pilots.
+    void count_render(std::chrono::steady_clock::time_point begun, double planned) {
+        wall_done_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+        planned_done_ += planned;
+        expect();
+    }
+
     // Leaves out the largest spp until the rest fits the budget.
     void fit_budget() {
         double seconds = seconds_left();
@@ -141,6 +173,7 @@ private:
                 candidate.scene.strategy.math = MathMode::precise;
             CompiledStrategy strategy = compile(candidate);
             const unsigned half = (reference_spp() + 1) / 2;
+            const auto begun = std::chrono::steady_clock::now();
             const auto a = strategy.render(half, plan_.seed, first_reference_sample_a),
                        b = strategy.render(half, plan_.seed, first_reference_sample_b);
             const FilmStatistics sa = statistics_of(a.film), sb = statistics_of(b.film);
@@ -154,6 +187,7 @@ private:
                  std::hypot(sa.stderr_luminance, sb.stderr_luminance) / 2,
                  true};
             info(fmt::format("reference by {}: {} samples per pixel, {:.3g} s", best_->label, r.spp, r.seconds));
+            count_render(begun, r.spp * record_of(*best_).pilot_seconds_a_sample);
         }
         r.mean_square = mean_square(reference_);
         if (!std::filesystem::exists(plan_.folder / "reference.png"))
@@ -170,12 +204,15 @@ private:
                 if (replicates.size() >= round)
                     continue;
                 const unsigned seed = plan_.seed + round;
-                const CompiledStrategy::RenderResult r = compiled(i).render(spp, seed);
+                CompiledStrategy &strategy = compiled(i);
+                const auto begun = std::chrono::steady_clock::now();
+                const CompiledStrategy::RenderResult r = strategy.render(spp, seed);
                 const ImageError error = error_against(reference_, r.image);
                 replicates.push_back(
                     {seed, r.seconds, error.mse, error.rel_mse, statistics_of(r.film).mean_luminance, r.film.invalid});
                 seconds += r.seconds;
                 save_record();
+                count_render(begun, spp * record_of(candidates_[i]).pilot_seconds_a_sample);
             }
         if (seconds > 0)
             info(fmt::format("round   {} of {}: {:.3g} s", round, record_.replicates, seconds));
@@ -192,7 +229,6 @@ private:
 
     // The candidate's compiled strategy, which the first use compiles.
     CompiledStrategy &compiled(size_t candidate) {
-        compiled_.resize(candidates_.size());
         if (!compiled_[candidate])
             compiled_[candidate] = std::make_unique<CompiledStrategy>(compile(candidates_[candidate]));
         return *compiled_[candidate];
@@ -248,6 +284,8 @@ private:
     const Candidate *best_ = nullptr;
     std::vector<std::unique_ptr<CompiledStrategy>> compiled_; // by candidate
     Image reference_;
+    std::optional<RunningProgress> progress_;
+    double wall_done_ = 0, planned_done_ = 0; // seconds of the renders so far: on the wall, and by the pilots
 };
 
 } // namespace

@@ -84,7 +84,7 @@ def shelves(scene, wood):
 
 def mixed_room():
     scene = Scene("mixed_room", """
-A room of about 50 thousand triangles of very mixed size, of all materials, under four area lights (two panels, a globe, a
+A room of about 50 thousand triangles of very mixed size, of all materials but Phong, under four area lights (two panels, a globe, a
 glowing knot): furniture of boxes, balls, rings, knots, vases, beads, a curtain and a carpet. Many meshes share an OBJ file.""")
     scene.camera((1.1, 2, 3.8), (-0.1, 1.1, -1.2), 66, 640, 400)
     wall, wood = diffuse(0.68, 0.66, 0.6), diffuse(0.42, 0.26, 0.14)

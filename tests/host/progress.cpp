@@ -1,5 +1,6 @@
 // Progress messages, and how Ctrl-C is noticed.
 #include "base/progress.h"
+#include "base/log.h"
 #include "base/signals.h"
 
 #include <catch2/catch.hpp>
@@ -29,28 +30,80 @@ TEST_CASE("A progress line tells share, speed and time left", "[progress]") {
     CHECK(progress_line("render", "samples", 0, 10, 0, false) == "render   0 %");
 }
 
+namespace {
+
+// What `run` prints to stderr. It is a file then, where each line stays.
+template <class Run> std::string told_by(const Run &run) {
+    std::fflush(stderr);
+    const int before = dup(STDERR_FILENO);
+    std::FILE *file = std::tmpfile();
+    dup2(fileno(file), STDERR_FILENO);
+    run();
+    std::fflush(stderr);
+    dup2(before, STDERR_FILENO);
+    close(before);
+    std::string text(1000, '\0');
+    std::rewind(file);
+    text.resize(std::fread(text.data(), 1, text.size(), file));
+    std::fclose(file);
+    return text;
+}
+
+void sleep(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
+
+} // namespace
+
 TEST_CASE("Running seconds are told from the first second on, and not before", "[progress]") {
-    // Redirected, so that each line stays.
     const auto told_in = [](double seconds) {
-        std::fflush(stderr);
-        const int before = dup(STDERR_FILENO);
-        std::FILE *file = std::tmpfile();
-        dup2(fileno(file), STDERR_FILENO);
-        {
-            const RunningSeconds running("compile");
-            std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
-        }
-        std::fflush(stderr);
-        dup2(before, STDERR_FILENO);
-        close(before);
-        std::string text(200, '\0');
-        std::rewind(file);
-        text.resize(std::fread(text.data(), 1, text.size(), file));
-        std::fclose(file);
-        return text;
+        return told_by([&] {
+            const RunningProgress running("compile");
+            sleep(seconds);
+        });
     };
     CHECK(told_in(0.2).empty());
     CHECK(told_in(1.3) == "compile 1 s\n");
+}
+
+TEST_CASE("The time left is told where it is known, until it has passed", "[progress]") {
+    CHECK(running_line("sweep", 6, 2.0, true) == "sweep    75 % [######################        ]  2.0 s left");
+    CHECK(running_line("verify", 90, 0.0, false) == "verify  100 %  0.0 s left");
+    CHECK(running_line("selftest", 3, {}, true) == "selftest 3 s");
+    const auto told_after = [](double left) {
+        return told_by([&] {
+            RunningProgress running("verify");
+            running.expect(left);
+            sleep(1.3);
+        });
+    };
+    CHECK_THAT(told_after(8), Catch::Matches("verify   1\\d %  [67]\\.\\d s left\n"));
+    CHECK(told_after(0.5) == "verify  1 s\n"); // it takes longer than was thought
+    CHECK(told_by([] {
+              RunningProgress running("test");
+              running.update(0, 4); // nothing is known yet
+              sleep(1.3);
+          }) == "test    1 s\n");
+    CHECK_THAT(told_by([] {
+                   RunningProgress running("test");
+                   sleep(0.2);
+                   running.update(1, 40); // 39 times as long
+                   sleep(1.1);
+               }),
+               Catch::Matches("test     1\\d %  [67]\\.\\d s left\n"));
+}
+
+TEST_CASE("A compilation within a longer task is told by the task's line", "[progress]") {
+    CHECK(told_by([] {
+              const RunningProgress whole("sweep"), part("compile");
+              sleep(1.3);
+          }) == "sweep   1 s\n");
+}
+
+TEST_CASE("A message takes the place of a bar that stands on its line", "[progress]") {
+    CHECK(told_by([] {
+              show("render  50 %");
+              info("result");
+              info("wrote");
+          }) == "render  50 %\r\033[Kresult\nwrote\n");
 }
 
 TEST_CASE("The first interrupt sets the flag, the second ends the process", "[progress]") {

@@ -119,6 +119,9 @@ TEST_CASE_METHOD(WarningFixture, "Lights that all face away", "[scene_warnings]"
     CHECK(warned(cube_at("0 0 5") + square_at(-2, true, emitter)).empty());
     CHECK(warned(cube_at("0 3.5 5") + lamp_up).empty());
     CHECK(warned(cube_at("0 0 5", emitter)).empty()); // shines on all sides, on the camera too
+    std::string both = lamp_up;                       // shines on both sides
+    both.replace(both.find("</emitter>"), 0, R"(<boolean name="twosided" value="true"/>)");
+    CHECK(warned(cube_at("0 0 5") + both).empty());
     // A bowl that faces away lights itself
     scratch.write("bowl.obj", "v -1 5 4\nv 1 5 4\nv 0 4 5\nv -1 5 6\nv 1 5 6\nf 1 3 2\nf 4 5 3\n");
     CHECK(warned(cube_at("0 0 5") + R"(<mesh type="obj"><string name="filename" value="bowl.obj"/>)" + emitter +

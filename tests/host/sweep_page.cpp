@@ -1,11 +1,13 @@
 // The figures and the page of a sweep, from replicates whose truth is known.
 #include "base/base64.h"
 #include "support/scratch.h"
+#include "sweep/auto.h"
 #include "sweep/convergence_plot.h"
 #include "sweep/page.h"
 #include "sweep/reference.h"
 
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 #include <random>
 
@@ -81,6 +83,28 @@ TEST_CASE("Seconds, ratio, ranking and verdict are one definition, where slopes 
     const std::vector<std::string> sentences = verdict(record, summary);
     CHECK_THAT(sentences[0], Catch::Contains("steep is the fastest"));
     CHECK_THAT(sentences[1], Catch::StartsWith("even needs 1") && Catch::Contains("1.60 times longer"));
+}
+
+TEST_CASE("auto says what a sweep says, in its words, and that pilots say it", "[sweep_page]") {
+    const AutoChoice choice{{{"a", "MIS", 1, 512}, {"b", "uniform hemisphere", 2.938, 8}}, 0, {}};
+    CHECK(choice.text() == "auto    MIS: the fastest to relMSE 1e-2, taken (by a pilot of 512 samples a pixel)\n"
+                           "auto    uniform hemisphere: 2.94 times longer (by a pilot of 8 samples a pixel)\n"
+                           "auto    pilots estimate these times; opal sweep measures them");
+    CHECK(choice.json()["candidates"][1]["relative_time"] == 2.938);
+}
+
+TEST_CASE("auto's pilots and a sweep have one ratio where samples are independent", "[sweep_page]") {
+    // In one pixel of mean 1, a sample has variance `scale` in 1 s; the sweep's points have relMSE scale / spp.
+    const auto pilot = [](double scale) { return Pilot{64, 1, {1}, {scale}, true}; };
+    const std::vector<double> costs = pilot_costs({pilot(6), pilot(18)});
+    SweepRecord record;
+    for (double scale : {3., 9.})
+        record.strategies.push_back(strategy_of(std::to_string(scale), scale, unsigned(scale)));
+    record.replicates = 6;
+    const SweepSummary summary = summarise(record);
+    CHECK(costs[1] / costs[0] == Approx(3));
+    CHECK(summary.strategies[1].relative_time.estimate == Approx(3).epsilon(0.02));
+    CHECK(costs[0] / ranking_level == Approx(summary.strategies[0].ranking_time().estimate).epsilon(0.02));
 }
 
 TEST_CASE("The page is one file whose text is escaped", "[sweep_page]") {

@@ -1,5 +1,6 @@
 // `opal bench`: it prints all figures, and its dumped hits are those of its dumped rays and triangles.
 #include "base/exit_code.h"
+#include "bench/report.h"
 #include "support/scratch.h"
 
 #include <catch2/catch.hpp>
@@ -230,6 +231,15 @@ TEST_CASE("What makes no sense is refused, and nothing is written", "[bench]") {
     CHECK_THAT(all.err, Catch::Contains("warning: ") && Catch::Contains("no shadow rays"));
 }
 
+TEST_CASE("a share of the time has a range, or is below what can be told", "[bench]") {
+    // Done twice, sampling took 0.9 to 1.02 times the time: the machine's noise is larger than its share.
+    const opal::Race traversal{{}, {1.5, 1.4, 1.7}, 0}, sampling{{}, {0.9048, 0.9, 1.02}, 0};
+    const opal::TimeShares shares{share_of(traversal), share_of(sampling)};
+    CHECK(shares.text() == "share of time               traversal 50 % [40, 70], random numbers below what can be told "
+                           "(at most 2 %), shading and all else 50 % [28, 60]\n");
+    CHECK(shares.json()["sampling"]["median"] == 0.0);
+}
+
 TEST_CASE("bench render times the kernel and its variants", "[bench]") {
     const ScratchFolder folder;
     const std::string file = (folder / "json").string();
@@ -243,7 +253,10 @@ TEST_CASE("bench render times the kernel and its variants", "[bench]") {
     CHECK((stats["shadow_rays_per_path"] > 0.5 && stats["shadow_rays_per_path"] < stats["rays_per_path"]));
     CHECK((stats["lanes_busy"] > 0.5 && stats["lanes_busy"] <= 1.0));
     CHECK(stats["compile_seconds"]["cold"] > 2 * stats["compile_seconds"]["warm"].get<double>());
-    CHECK(stats["share"]["traversal"] > 0.1);
+    CHECK(stats["share"]["traversal"]["median"] > 0.1);
+    for (const char *stage : {"traversal", "sampling", "shading"})
+        for (const char *figure : {"median", "least", "greatest"})
+            CHECK((stats["share"][stage][figure] >= 0.0 && stats["share"][stage][figure] <= 1.0));
     for (const char *lanes : {"1", "4", "8", "16"})
         CHECK(stats["widths"][lanes]["time"]["median"] > 0.0);
     CHECK(stats["general"]["time"]["median"] > 1.0);

@@ -1,6 +1,7 @@
-// 1, 4, 8 and 16 lanes render the same picture: the same random numbers, other roundings. Only a path that a rounding
-// sends elsewhere may differ, and few do. One lane walks the tree where more test every triangle, so this holds the two
-// intersectors together too.
+// 4, 8 and 16 lanes render the same bits. One lane renders the same picture with other roundings, from the same random
+// numbers: only a path that a rounding sends elsewhere differs, and few do. One lane walks the tree where more test
+// every triangle, so this holds the two intersectors together too.
+#include "read/nori/load.h"
 #include "support/device.h"
 #include "support/pictures.h"
 #include "support/rooms.h"
@@ -43,6 +44,8 @@ Film at_lanes(const SceneDescription &scene, int lanes, MathMode math = MathMode
     return render(scene, 8, test_seed(50), setup);
 }
 
+bool is_same(const Film &a, const Film &b) { return a.sum == b.sum && a.count == b.count; }
+
 // The gallery with another cube of glass is too large to do without a tree at any width.
 SceneDescription large_gallery(int width, int height) {
     SceneDescription scene = gallery(width, height);
@@ -62,7 +65,7 @@ SceneDescription strategy_of(SceneDescription scene, const Overrides &how) {
 
 } // namespace
 
-TEST_CASE("The same picture at every width, in every integrator", "[lanes]") {
+TEST_CASE("The same bits at every width but one lane, in every integrator", "[lanes]") {
     const std::vector<Overrides> strategies = {
         {{"integrator", "normals"}},
         {{"integrator", "ao"}, {"hemisphere", "cosine"}},
@@ -79,29 +82,43 @@ TEST_CASE("The same picture at every width, in every integrator", "[lanes]") {
     for (Overrides how : strategies) {
         how["specialise"] = "off"; // one program a width
         const SceneDescription chosen = strategy_of(scene, how);
-        const Film one = at_lanes(chosen, 1);
+        const Film one = at_lanes(chosen, 1), sixteen = at_lanes(chosen, 16);
         CHECK(one.invalid == 0);
-        for (int lanes : {4, 8, 16}) {
-            const Difference d = difference(one, at_lanes(chosen, lanes));
-            INFO(how.at("integrator") << " at " << lanes << " lanes: " << d.pixels_off
-                                      << " pixels off, means differ by " << d.means);
-            CHECK(d.pixels_off <= 3);
-            CHECK(d.means < 1e-6);
-        }
+        const Difference d = difference(one, sixteen);
+        INFO(how.at("integrator") << ": one lane has " << d.pixels_off << " pixels off, means differ by " << d.means);
+        CHECK(d.pixels_off <= 3);
+        CHECK(d.means < 1e-6);
+        CHECK(is_same(at_lanes(chosen, 4), sixteen));
+        CHECK(is_same(at_lanes(chosen, 8), sixteen));
     }
 }
 
-TEST_CASE("The same picture at every width without a tree, and by the tree", "[lanes]") {
+TEST_CASE("The same bits at every width without a tree, and nearly by the tree of one lane", "[lanes]") {
     const SceneDescription scene = with_strategy(gallery(25, 21), {{"mis", "power"}});
-    const Film one = at_lanes(scene, 1);
+    const Film one = at_lanes(scene, 1), sixteen = at_lanes(scene, 16);
+    const Difference d = difference(one, sixteen);
+    INFO(d.pixels_off << " pixels off, means differ by " << d.means);
+    CHECK(d.pixels_off <= 3);
+    CHECK(d.means < 1e-6);
     for (int lanes : {4, 8, 16}) {
-        const FlatScene flat = flatten(scene, lanes);
-        REQUIRE_FALSE(flat.features[FEATURE_tree]);
-        const Difference d = difference(one, at_lanes(scene, lanes));
-        INFO(lanes << " lanes: " << d.pixels_off << " pixels off, means differ by " << d.means);
-        CHECK(d.pixels_off <= 3);
-        CHECK(d.means < 1e-6);
+        REQUIRE_FALSE(flatten(scene, lanes).features[FEATURE_tree]);
+        CHECK((lanes == 16 || is_same(at_lanes(scene, lanes), sixteen)));
     }
+}
+
+TEST_CASE("A room renders the same bits at 4, 8 and 16 lanes, and single paths go elsewhere at one", "[lanes]") {
+    SceneDescription scene = load_scene(std::filesystem::path(OPAL_SOURCE_DIR) / "scenes/mixed_room.xml");
+    scene.camera.width = 96;
+    scene.camera.height = 60;
+    const Film one = at_lanes(scene, 1), sixteen = at_lanes(scene, 16);
+    CHECK(is_same(at_lanes(scene, 4), sixteen));
+    CHECK(is_same(at_lanes(scene, 8), sixteen));
+    // Glass, mirrors and small triangles magnify roundings: 27 of 5760 pixels, with this seed.
+    const Difference d = difference(one, sixteen);
+    INFO(d.pixels_off << " pixels off, means of the others differ by " << d.means);
+    CHECK_FALSE(is_same(one, sixteen));
+    CHECK(d.pixels_off < 58); // one in a hundred
+    CHECK(d.means < 1e-6);
 }
 
 TEST_CASE("The general kernel renders what the specialised ones do", "[lanes]") {

@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <regex>
+
 using namespace opal;
 using namespace opal::test;
 
@@ -50,6 +52,19 @@ SceneDescription load(const SceneFolder &folder, const std::string &integrator) 
 }
 
 } // namespace
+
+TEST_CASE("The time left that verify tells is never more than its budget", "[verify]") {
+    const SceneFolder folder;
+    const Outcome outcome = folder.verify("--budget 4s --strategies 'lighting=mis;lighting=emitter'");
+    INFO(outcome.err);
+    static const std::regex told("verify +\\d+ %  ([0-9.]+) s left");
+    std::vector<double> left;
+    for (std::sregex_iterator i(outcome.err.begin(), outcome.err.end(), told), end; i != end; ++i)
+        left.push_back(std::stod((*i)[1]));
+    REQUIRE(left.size() >= 1);
+    for (double seconds : left)
+        CHECK(seconds < 4);
+}
 
 TEST_CASE("All sensible strategies of a right renderer agree", "[verify][stat]") {
     const SceneFolder folder;
