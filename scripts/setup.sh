@@ -9,7 +9,7 @@ packages=(
     pocl-opencl-icd                                              # an OpenCL device: the CPU
     libopenexr-dev libpng-dev libpugixml-dev                     # images and XML
     libtinyobjloader-dev                                         # meshes
-    libfmt-dev libcli11-dev nlohmann-json3-dev                   # text, command line, JSON
+    libfmt-dev nlohmann-json3-dev                                # text, JSON
     catch2                                                       # tests
     "$@"
 )

@@ -25,6 +25,17 @@ void clear_bar() {
     bar_stands = false;
 }
 
+std::FILE *results = stdout;
+
+void write(const std::string &text, std::FILE *stream) {
+    const std::lock_guard lock(streams);
+    clear_bar();
+    errno = 0;
+    const bool taken = std::fwrite(text.data(), 1, text.size(), stream) == text.size() && std::fflush(stream) == 0;
+    if (!taken && stream == stdout && first_output_error == 0)
+        first_output_error = errno ? errno : EIO;
+}
+
 void say(const char *prefix, const char *line) {
     const std::lock_guard lock(streams);
     clear_bar();
@@ -69,14 +80,11 @@ void show(const std::string &text) {
     bar_stands = !text.ends_with(clear_line) && !text.ends_with('\n');
 }
 
-void print_text(const std::string &text) {
-    const std::lock_guard lock(streams);
-    clear_bar();
-    errno = 0;
-    const bool taken = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-    if (!taken && first_output_error == 0)
-        first_output_error = errno ? errno : EIO;
-}
+void free_stdout() { results = stderr; }
+
+void print_data(const std::string &text) { write(text, stdout); }
+
+void print_text(const std::string &text) { write(text, results); }
 
 int output_error() { return first_output_error; }
 

@@ -28,7 +28,9 @@ void print_text(const std::string &text);
 template <class... Arguments> void print(fmt::format_string<Arguments...> text, Arguments &&...arguments) {
     print_text(fmt::format(text, std::forward<Arguments>(arguments)...));
 }
-int output_error(); // errno of the first result that could not be written to stdout; 0: none
+void free_stdout();                       // from now on results go to stderr, and print_data alone to stdout
+void print_data(const std::string &text); // to stdout in any case: a file that was asked for as "-"
+int output_error();                       // errno of the first result that could not be written to stdout; 0: none
 
 // Call first in main. From then on a failed write does not end the process by SIGPIPE or SIGXFSZ. A closed stdin,
 // stdout or stderr is opened anew: else the next file would get its number, and printed text would end up in that file.

@@ -27,6 +27,31 @@ size_t edit_distance(std::string_view a, std::string_view b) {
     return row[b.size()];
 }
 
+// Other words for names of Opal, as courses, papers and other renderers have them.
+struct OtherWord {
+    std::string_view word, name;
+};
+constexpr OtherWord other_words[] = {{"nee", "emitter"},           {"light", "emitter"},
+                                     {"direct", "emitter"},        {"brdf", "bsdf"},
+                                     {"path_tracer", "path"},      {"pathtracer", "path"},
+                                     {"path-tracer", "path"},      {"pt", "path"},
+                                     {"random", "independent"},    {"balance_heuristic", "balance"},
+                                     {"power_heuristic", "power"}, {"relaxed", "fast"},
+                                     {"fp64", "double"},           {"float64", "double"}};
+
+// The one known name that begins with these letters, or "".
+std::string completed(std::string_view name, const std::vector<std::string> &known) {
+    constexpr size_t least_letters = 3;
+    std::string found;
+    for (const std::string &candidate : known)
+        if (name.size() >= least_letters && candidate.starts_with(name)) {
+            if (!found.empty())
+                return "";
+            found = candidate;
+        }
+    return found;
+}
+
 } // namespace
 
 std::string with_hyphens(std::string name) {
@@ -51,7 +76,10 @@ std::string nearest_name(std::string_view name, const std::vector<std::string> &
             nearest = candidate;
         }
     }
-    return nearest;
+    for (const OtherWord &other : other_words)
+        if (nearest.empty() && other.word == name && std::find(known.begin(), known.end(), other.name) != known.end())
+            return std::string(other.name);
+    return nearest.empty() ? completed(name, known) : nearest;
 }
 
 std::string unknown_name(std::string_view what, std::string_view name, const std::vector<std::string> &known,

@@ -11,7 +11,8 @@
 
 namespace opal {
 
-// The known name nearest by edit distance (Levenshtein 1966), or "" where none is near enough to be a slip of the pen.
+// The known name nearest by edit distance (Levenshtein 1966); else the name that other renderers have for it ("nee" is
+// emitter); else the one that begins with these letters; else "".
 std::string nearest_name(std::string_view name, const std::vector<std::string> &known);
 
 std::string with_hyphens(std::string name); // as the command line spells it: "int_ior" -> "int-ior"

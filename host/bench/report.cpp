@@ -48,6 +48,7 @@ std::string BenchSubject::tree_text() const {
 nlohmann::json BenchSubject::json() const {
     return object({{"scene", scene.file.string()},
                    {"dialect", name_of(scene.dialect)},
+                   {"definitions", scene.definitions},
                    {"device", device.info.name},
                    {"driver", device.info.driver},
                    {"lanes", lanes},

@@ -5,6 +5,7 @@
 #include "base/table.h"
 #include "bench/report.h"
 #include "commands/commands.h"
+#include "commands/json_file.h"
 #include "commands/options.h"
 #include "image/image.h"
 
@@ -30,7 +31,8 @@ const std::vector<RayKind> &ray_kinds() {
 
 struct RayOptions {
     SceneOptions scene;
-    std::string device, kind, json, dump_rays, dump_hits, dump_triangles;
+    DeviceOptions device;
+    std::string kind, json, dump_rays, dump_hits, dump_triangles;
     unsigned rays = 1u << 20, seed = 0;
     int runs = 7;
 };
@@ -57,11 +59,10 @@ void check_ray_options(const RayOptions &o) {
                                      {"--dump-hits", &o.dump_hits},
                                      {"--dump-triangles", &o.dump_triangles}})
         if (!file->empty() && o.kind.empty())
-            throw Error(fmt::format("{} is of one kind of rays: name it with --kind; available: {}", flag,
-                                    joined(names_of(ray_kinds()))));
-    if (!o.kind.empty())
-        find_row(ray_kinds(), "kind of rays", o.kind);
-    for (const std::string *file : {&o.json, &o.dump_rays, &o.dump_hits, &o.dump_triangles})
+            throw UsageError(fmt::format("{} is of one kind of rays: name it with --kind; available: {}", flag,
+                                         joined(names_of(ray_kinds()))));
+    prepare_json(o.json);
+    for (const std::string *file : {&o.dump_rays, &o.dump_hits, &o.dump_triangles})
         if (!file->empty())
             check_writable(*file);
 }
@@ -108,8 +109,7 @@ int run_rays(const RayOptions &o) {
         progress.update(kind + 1, RAYS_KINDS);
     }
     report["compile_seconds"] = bench.compile_seconds();
-    if (!o.json.empty())
-        write_safely(o.json, dump(report, 2) + "\n");
+    write_json(o.json, "bench rays", report);
     return 0;
 }
 
@@ -124,7 +124,13 @@ Command rays_command() {
         .options = append(
             scene_rows(o->scene),
             {device_row(o->device),
-             {.flags = "--kind", .target = &o->kind, .help = kinds, .type = "KIND"},
+             threads_row(o->device),
+             {.flags = "--kind",
+              .target = &o->kind,
+              .help = kinds,
+              .check = Accepts{[](const std::string &name) { find_row(ray_kinds(), "kind of rays", name); },
+                               names_of(ray_kinds())},
+              .type = "KIND"},
              {.flags = "--rays",
               .target = &o->rays,
               .help = "Rays of a kind that are tried, about; those that start nowhere are left out",
@@ -134,10 +140,7 @@ Command rays_command() {
               .help = "Times that all rays are traced; the median is told",
               .check = Range{1, 10000}},
              {.flags = "--seed", .target = &o->seed, .help = "Of the rays"},
-             {.flags = "--json",
-              .target = &o->json,
-              .help = "File for the figures; mrays_per_second is there for one --kind, and in `kinds` for each",
-              .type = "FILE"},
+             json_row(o->json, "the figures, with mrays_per_second for one --kind, and in `kinds` for each"),
              {.flags = "--dump-rays",
               .target = &o->dump_rays,
               .help = "With --kind: the rays, little-endian float32 ox oy oz tmin dx dy dz tmax each, in the units of "
@@ -155,19 +158,21 @@ Command rays_command() {
                       "  are two triangles each, degenerate triangles are dropped; flattened = (world - center) * "
                       "scale of the JSON",
               .type = "FILE"}}),
+        .examples = {"opal bench rays scenes/mixed_room.xml",
+                     "opal bench rays scenes/mixed_room.xml --kind shadow --json rays.json"},
         .run = [o] { return run_rays(*o); }};
 }
 
 struct RenderBenchOptions {
     SceneOptions scene;
-    std::string device, json;
+    DeviceOptions device;
+    std::string json;
     double seconds = 0.5;
     int rounds = 5;
 };
 
 int run_renders(const RenderBenchOptions &o) {
-    if (!o.json.empty())
-        check_writable(o.json);
+    prepare_json(o.json);
     const SceneDescription scene = load_scene(o.scene);
     const KernelChoice choice = choose_kernel(o.device, scene);
     const DevicePick &pick = choice.pick;
@@ -219,8 +224,7 @@ int run_renders(const RenderBenchOptions &o) {
     SceneDescription anything = scene;
     anything.strategy.specialise = false;
     report["general"] = race("general kernel", flatten(anything, build.lanes), build).json();
-    if (!o.json.empty())
-        write_safely(o.json, dump(report, 2) + "\n");
+    write_json(o.json, "bench render", report);
     return 0;
 }
 
@@ -231,6 +235,7 @@ Command renders_command() {
             .options = append(
                 scene_rows(o->scene),
                 {device_row(o->device),
+                 threads_row(o->device),
                  {.flags = "--seconds",
                   .target = &o->seconds,
                   .help = "Of each render, about",
@@ -240,7 +245,9 @@ Command renders_command() {
                   .help = "Times that each is rendered, in turn with the kernel that `opal render` takes; the median "
                           "is told",
                   .check = Range{1, 1000}},
-                 {.flags = "--json", .target = &o->json, .help = "File for the figures", .type = "FILE"}}),
+                 json_row(o->json, "the figures")}),
+            .examples = {"opal bench render scenes/mixed_room.xml",
+                         "opal bench render scenes/mixed_room.xml --seconds 2 --rounds 9"},
             .run = [o] { return run_renders(*o); }};
 }
 

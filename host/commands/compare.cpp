@@ -3,6 +3,7 @@
 #include "base/json.h"
 #include "base/log.h"
 #include "commands/commands.h"
+#include "commands/json_file.h"
 #include "compare/evidence.h"
 #include "image/metrics.h"
 
@@ -182,8 +183,7 @@ int run(const Options &o) {
         check_writable(o.out);
         check_writable(std::filesystem::path(o.out).replace_extension(".png"));
     }
-    if (!o.json.empty())
-        check_writable(o.json);
+    prepare_json(o.json);
     Image image = read_exr(o.image), reference = read_exr(o.reference);
     check_layers(o, image, reference);
     align(o, image, reference);
@@ -223,8 +223,7 @@ int run(const Options &o) {
     }
     if (!o.out.empty())
         write_map(o.out, image, reference, test ? &*test : nullptr);
-    if (!o.json.empty())
-        write_safely(o.json, dump(report, 2) + "\n");
+    write_json(o.json, "compare", report);
     if (!invalid.empty())
         throw ErrorList(invalid);
     return 0;
@@ -242,13 +241,15 @@ Command compare_command() {
                     {.flags = "-o,--output",
                      .target = &o->out,
                      .help = "EXR for the difference A - B (and z.R, z.G, z.B of its tiles); a PNG goes beside it, "
-                             "red where A is brighter, blue where B is"},
-                    {.flags = "--json", .target = &o->json, .help = "File for the figures"},
+                             "red where A is brighter, blue where B is",
+                     .type = "FILE"},
+                    json_row(o->json, "the figures"),
                     {.flags = "--significance",
                      .target = &o->significance,
                      .help = "Level of the test that both have one mean",
                      .check = Range{1e-12, 0.5}},
                     {.flags = "--quiet", .target = &o->quiet, .help = "Print nothing but warnings and errors"}},
+        .examples = {"opal compare a.exr b.exr", "opal compare a.exr b.exr -o difference.exr --json figures.json"},
         .run = [o] { return run(*o); }};
 }
 

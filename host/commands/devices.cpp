@@ -2,6 +2,7 @@
 #include "base/log.h"
 #include "base/units.h"
 #include "commands/commands.h"
+#include "commands/json_file.h"
 #include "device/info_json.h"
 
 #include <fmt/format.h>
@@ -13,8 +14,7 @@ namespace opal {
 namespace {
 
 struct DevicesOptions {
-    bool json = false;
-    std::string device;
+    std::string device, json;
     double time_limit = 20;
 };
 
@@ -57,16 +57,14 @@ void print_table(const std::vector<DeviceInfo> &devices) {
 }
 
 int run_devices(const DevicesOptions &options) {
+    prepare_json(options.json);
     const std::vector<DeviceInfo> devices = list_devices(options.time_limit);
-    if (!options.json)
-        print_table(devices);
+    print_table(devices);
     const DevicePick pick = pick_device(options.device, devices);
-    if (!options.json) {
-        print("\nrender takes {}: {} ({}). --device takes an index, cpu, gpu, or part of a name.\n", pick.info.index,
-              pick.info.name, pick.reason);
-        return 0;
-    }
-    print("{}\n", dump(object({{"devices", devices}, {"pick", pick.info.index}, {"reason", pick.reason}}), 2));
+    print("\nrender takes {}: {} ({}). --device takes an index, cpu, gpu, or part of a name.\n", pick.info.index,
+          pick.info.name, pick.reason);
+    write_json(options.json, "devices",
+               object({{"devices", devices}, {"pick", pick.info.index}, {"reason", pick.reason}}));
     return 0;
 }
 
@@ -76,14 +74,16 @@ Command devices_command() {
     auto o = std::make_shared<DevicesOptions>();
     return {.name = "devices",
             .help = "List every OpenCL platform and device, and which one `render` takes",
-            .options = {{.flags = "--json", .target = &o->json, .help = "Print JSON"},
+            .options = {json_row(o->json, "the list"),
                         {.flags = "--device",
                          .target = &o->device,
-                         .help = "What `render` would take: an index, cpu, gpu, or part of a name"},
+                         .help = "What `render` would take: an index, cpu, gpu, or part of a name",
+                         .type = "DEVICE"},
                         {.flags = "--time-limit",
                          .target = &o->time_limit,
                          .help = "Seconds that a driver has to answer",
                          .check = Range{0.001, 3600.0}}},
+            .examples = {"opal devices", "opal devices --device gpu --json -"},
             .run = [o] { return run_devices(*o); }};
 }
 

@@ -1,10 +1,12 @@
 // opal extremes: where single precision ends. Scenes are stretched over many decades, single against double precision.
 #include "base/error.h"
+#include "base/exit_code.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "base/table.h"
 #include "commands/commands.h"
+#include "commands/json_file.h"
 #include "commands/options.h"
 #include "extremes/report.h"
 
@@ -15,7 +17,8 @@ namespace opal {
 namespace {
 
 struct ExtremesOptions {
-    std::string device, json, plot, cl_dir;
+    DeviceOptions device;
+    std::string json, plot, cl_dir;
     std::vector<std::string> names;
     extremes::StressSettings settings;
     bool quick = false, list = false;
@@ -39,14 +42,14 @@ int run(ExtremesOptions o) {
         return 0;
     }
     const auto rows = chosen(o.names);
-    for (const std::string &file : {o.json, o.plot})
-        if (!file.empty())
-            check_writable(file);
+    prepare_json(o.json);
+    if (!o.plot.empty())
+        check_writable(o.plot);
     if (o.quick)
         o.settings.side = o.settings.spp = 32;
     o.settings.side = o.side.value_or(o.settings.side);
     o.settings.spp = o.spp.value_or(o.settings.spp);
-    const DevicePick pick = pick_device(o.device, list_devices());
+    const DevicePick pick = choose_device(o.device);
     lanes_for(pick.info, 0, MathMode::double_precision); // refuses a device without doubles before anything is rendered
     const Device device = open_device(pick.info);
     const Sources sources = load_sources(o.cl_dir);
@@ -75,11 +78,10 @@ int run(ExtremesOptions o) {
         report["rows"].push_back(extremes::json_of(results.back()));
         kept = kept && results.back().kept;
     }
-    if (!o.json.empty())
-        write_safely(o.json, dump(report, 2) + "\n");
+    write_json(o.json, "extremes", report);
     if (!o.plot.empty())
         write_safely(o.plot, extremes::svg_of(results));
-    return kept ? 0 : 1;
+    return kept ? exit_done : exit_check_failed;
 }
 
 } // namespace
@@ -91,7 +93,10 @@ Command extremes_command() {
         .help = "Stretch scenes over many decades and hold single against double precision",
         .options = {{.flags = "--row",
                      .target = &o->names,
-                     .help = "What to stretch (--list); all of them where none is named"},
+                     .help = "What to stretch (--list); all of them where none is named",
+                     .check = Accepts{[](const std::string &name) { find_row(extremes::stress_rows(), "row", name); },
+                                      names_of(extremes::stress_rows())},
+                     .type = "NAME"},
                     {.flags = "--list", .target = &o->list, .help = "List what can be stretched"},
                     {.flags = "--quick", .target = &o->quick, .help = "Every third value, small pictures"},
                     {.flags = "--side",
@@ -105,10 +110,12 @@ Command extremes_command() {
                      .check = Range{1, 1 << 24},
                      .default_text = std::to_string(o->settings.spp)},
                     {.flags = "--seed", .target = &o->settings.seed, .help = "Of the random numbers"},
-                    {.flags = "--json", .target = &o->json, .help = "All figures", .type = "FILE"},
+                    json_row(o->json, "all figures"),
                     {.flags = "--plot", .target = &o->plot, .help = "SVG of error against parameter", .type = "FILE"},
                     cl_dir_row(o->cl_dir),
-                    device_row(o->device)},
+                    device_row(o->device),
+                    threads_row(o->device)},
+        .examples = {"opal extremes --quick", "opal extremes --row distance --plot distance.svg"},
         .run = [o] { return run(*o); }};
 }
 

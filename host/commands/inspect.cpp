@@ -1,16 +1,21 @@
+#include "base/json.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "base/units.h"
 #include "bench/renders.h"
 #include "commands/commands.h"
+#include "commands/json_file.h"
 #include "commands/options.h"
 #include "flatten/features.h"
 #include "flatten/precision_warnings.h"
 #include "flatten/scene_warnings.h"
+#include "render/report.h"
 #include "scene/options.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
 #include <memory>
 #include <set>
 
@@ -21,7 +26,8 @@ namespace {
 struct InspectOptions {
     SceneOptions scene;
     bool cl = false, bench = false;
-    std::string device;
+    DeviceOptions device;
+    std::string json;
 };
 
 // The width that "auto" means for a CPU device here. inspect opens no device, so the host's vectors decide.
@@ -86,18 +92,46 @@ std::string bsdf_text(const Bsdf &bsdf) {
     return text;
 }
 
-void print_mesh(const Mesh &mesh) {
-    row("", "{}: {}, {}{}", mesh.name, std::visit([](const auto &shape) { return shape.text(); }, mesh.shape),
-        bsdf_text(mesh.bsdf),
-        mesh.radiance ? fmt::format(", emits {} W/(m^2 sr){}", color_text(*mesh.radiance),
-                                    mesh.emits_on_both_sides ? " on both sides" : "")
-                      : "");
+std::string shape_text(const Mesh &mesh) {
+    return std::visit([](const auto &shape) { return shape.text(); }, mesh.shape);
+}
+
+// All of a mesh but its name.
+std::string mesh_text(const Mesh &mesh) {
+    return fmt::format("{}, {}{}", shape_text(mesh), bsdf_text(mesh.bsdf),
+                       mesh.radiance ? fmt::format(", emits {} W/(m^2 sr){}", color_text(*mesh.radiance),
+                                                   mesh.emits_on_both_sides ? " on both sides" : "")
+                                     : "");
+}
+
+constexpr size_t most_meshes = 20; // lines, a screen's worth
+
+// A line for all meshes that differ in their names alone, in the order of the scene.
+void print_meshes(const std::vector<Mesh> &meshes) {
+    std::vector<std::pair<std::string, size_t>> lines;      // with the first mesh
+    std::map<std::string, std::pair<size_t, size_t>> known; // the line, and how often
+    for (size_t i = 0; i < meshes.size(); i++) {
+        const auto [place, is_new] = known.try_emplace(mesh_text(meshes[i]), lines.size(), 0);
+        if (is_new)
+            lines.emplace_back(place->first, i);
+        place->second.second++;
+    }
+    for (size_t i = 0; i < std::min(lines.size(), most_meshes); i++) {
+        const size_t others = known[lines[i].first].second - 1;
+        const std::string &name = meshes[lines[i].second].name;
+        row("", "{}{}: {}", name.empty() ? "unnamed" : name, others ? fmt::format(" and {} more", others) : "",
+            lines[i].first);
+    }
+    if (lines.size() > most_meshes)
+        row("", "... and {} more kinds of meshes (--json has all)", lines.size() - most_meshes);
 }
 
 void print_scene(const SceneDescription &scene, const FlatScene &flat) {
     const Camera &camera = scene.camera;
     row("scene", "{}", scene.file.string());
     row("dialect", "{}", name_of(scene.dialect));
+    for (const auto &[name, value] : scene.definitions)
+        row("defined", "{} = {}", name, value);
     row("camera", "{} x {} pixels, {}, near {:g}, far {:g}", camera.width, camera.height, camera_text(camera),
         camera.near_clip, camera.far_clip);
     row("filter", "{}{}", filter_text(camera.filter), camera.filter.given ? "" : " (the dialect's default)");
@@ -116,8 +150,7 @@ void print_scene(const SceneDescription &scene, const FlatScene &flat) {
     for (const Light &light : scene.lights)
         row("", "{}: {}", emitter_name(light.kind()), parameters_text(light));
     row("meshes", "{}, {} triangles", scene.meshes.size(), flat.triangles.size());
-    for (const Mesh &mesh : scene.meshes)
-        print_mesh(mesh);
+    print_meshes(scene.meshes);
 }
 
 void print_strategy(const SceneDescription &scene, int lanes) {
@@ -182,7 +215,48 @@ void print_savings(const InspectOptions &options, const SceneDescription &scene)
     }
 }
 
+nlohmann::json json_of(const SceneDescription &scene, const FlatScene &flat, int lanes) {
+    const Camera &camera = scene.camera;
+    nlohmann::json json = object({{"scene", scene.file.string()},
+                                  {"dialect", name_of(scene.dialect)},
+                                  {"definitions", scene.definitions},
+                                  {"width", camera.width},
+                                  {"height", camera.height},
+                                  {"camera", camera_text(camera)},
+                                  {"near_clip", camera.near_clip},
+                                  {"far_clip", camera.far_clip},
+                                  {"filter", filter_text(camera.filter)},
+                                  {"spp", scene.spp},
+                                  {"triangles", flat.triangles.size()},
+                                  {"emitters", flat.emitters.size()},
+                                  {"lanes", lanes},
+                                  {"strategy", strategy_json(scene)},
+                                  {"lights", nlohmann::json::array()},
+                                  {"meshes", nlohmann::json::array()},
+                                  {"buffers", nlohmann::json::object()},
+                                  {"features", nlohmann::json::array()},
+                                  {"notes", scene_notes(scene, false)}});
+    for (const Light &light : scene.lights)
+        json["lights"].push_back(
+            object({{"type", emitter_name(light.kind())}, {"parameters", parameters_text(light)}}));
+    for (const Mesh &mesh : scene.meshes)
+        json["meshes"].push_back(object({{"name", mesh.name},
+                                         {"shape", shape_text(mesh)},
+                                         {"bsdf", bsdf_text(mesh.bsdf)},
+                                         {"radiance", mesh.radiance ? nlohmann::json(*mesh.radiance) : nullptr},
+                                         {"twosided", mesh.emits_on_both_sides}}));
+#define OPAL_BUFFER(record, name, shown)                                                                               \
+    json["buffers"][shown] = object({{"rows", flat.name.size()}, {"bytes", flat.name.size() * sizeof(flat.name[0])}});
+    OPAL_TABLES(OPAL_BUFFER)
+#undef OPAL_BUFFER
+    for (unsigned i = 0; i < FEATURE_COUNT; ++i)
+        json["features"].push_back(object(
+            {{"name", feature_name(i)}, {"in", bool(flat.features[i])}, {"reason", flat.features.list[i].reason}}));
+    return json;
+}
+
 int run_inspect(const InspectOptions &options) {
+    prepare_json(options.json);
     const SceneDescription scene = load_scene(options.scene);
     const int lanes = scene.strategy.lanes ? scene.strategy.lanes : host_vector_width();
     const FlatScene flat = flatten(scene, lanes);
@@ -203,6 +277,7 @@ int run_inspect(const InspectOptions &options) {
         warn(line);
     for (const std::string &line : scene_notes(scene, false))
         note(line);
+    write_json(options.json, "inspect", json_of(scene, flat, lanes));
     if (options.bench)
         print_savings(options, scene);
     return 0;
@@ -217,10 +292,13 @@ Command inspect_command() {
             .options =
                 append(scene_rows(o->scene),
                        {{.flags = "--cl", .target = &o->cl, .help = "Print the text of the kernel's program instead"},
+                        json_row(o->json, "all of this, with every mesh"),
                         {.flags = "--bench",
                          .target = &o->bench,
                          .help = "Render with each feature that is left out, and without: what it saved"},
-                        device_row(o->device)}),
+                        device_row(o->device),
+                        threads_row(o->device)}),
+            .examples = {"opal inspect scenes/mixed_room.xml", "opal inspect scenes/cbox_mis.xml --cl --lanes 1"},
             .run = [o] { return run_inspect(*o); }};
 }
 

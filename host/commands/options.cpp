@@ -27,13 +27,19 @@ std::vector<std::string> dialect_choices() {
     return names;
 }
 
-OptionRow override_row(SceneOptions &options, const std::string &name, const std::string &type,
-                       const std::string &help) {
+// A row that set_option understands. values: names that it takes, if it takes names.
+OptionRow override_row(SceneOptions &options, const std::string &name, const std::string &type, const std::string &help,
+                       const std::vector<std::string> &values) {
+    const auto parse = [name](const std::string &value) {
+        Strategy strategy;
+        set_option(strategy, name, value);
+    };
     return {.flags = "--" + name,
             .target = MapEntry{&options.overrides, name},
             .help = help,
+            .check = Accepts{parse, values},
             .type = type,
-            .group = "Strategy"};
+            .group = strategy_group};
 }
 
 } // namespace
@@ -48,9 +54,10 @@ std::vector<OptionRow> scene_rows(SceneOptions &options) {
 }
 
 std::vector<OptionRow> strategy_rows(SceneOptions &options) {
-    std::vector<OptionRow> rows = {override_row(options, "integrator", "NAME", integrator_help())};
+    std::vector<OptionRow> rows = {
+        override_row(options, "integrator", "NAME", integrator_help(), names_of(integrator_types()))};
     for (const StrategyOption &option : strategy_options())
-        rows.push_back(override_row(options, option.name, option.values, option.help));
+        rows.push_back(override_row(options, option.name, option.values, option.help, option.names));
     rows.push_back({.flags = "--lenient",
                     .target = &options.load.lenient,
                     .help =
@@ -62,6 +69,11 @@ std::vector<OptionRow> strategy_rows(SceneOptions &options) {
                             "2012: the camera's +x points to the right of the image), or auto: by its names",
                     .check = OneOf<std::string>{dialect_choices()},
                     .type = "NAME"});
+    rows.push_back({.flags = "-D,--define",
+                    .target = &options.load.definitions,
+                    .help = "The value for $NAME in the scene's attributes; without it, that of <default name=\"NAME\" "
+                            "value=\"...\"/>; may be repeated",
+                    .type = "NAME=VALUE"});
     rows.push_back({.flags = "--cl-dir",
                     .target = &options.cl_dir,
                     .help = "Read the kernels from this copy of cl/ [those in the binary]",
@@ -73,11 +85,25 @@ OptionRow cl_dir_row(std::string &cl_dir) {
     return {.flags = "--cl-dir", .target = &cl_dir, .help = "Read the kernels from this copy of cl/", .type = "FOLDER"};
 }
 
-OptionRow device_row(std::string &device) {
+OptionRow device_row(DeviceOptions &device) {
     return {.flags = "--device",
-            .target = &device,
+            .target = &device.name,
             .help = "An index of `opal devices`, cpu, gpu, or part of a name [the first GPU, else the CPU]",
             .type = "DEVICE"};
+}
+
+OptionRow threads_row(DeviceOptions &device) {
+    return {.flags = "--threads",
+            .target = &device.threads,
+            .help = "Threads that a CPU device may use [all that `opal devices` shows as units]",
+            .check = Range{1u, 65535u}};
+}
+
+DevicePick choose_device(const DeviceOptions &device) {
+    DevicePick pick = pick_device(device.name, list_devices());
+    if (device.threads)
+        pick.info = with_threads(pick.info, device.threads);
+    return pick;
 }
 
 SceneDescription load_scene(const SceneOptions &options) {
@@ -87,8 +113,8 @@ SceneDescription load_scene(const SceneOptions &options) {
     return scene;
 }
 
-KernelChoice choose_kernel(const std::string &device, const SceneDescription &scene) {
-    KernelChoice choice{pick_device(device, list_devices()), {}};
+KernelChoice choose_kernel(const DeviceOptions &device, const SceneDescription &scene) {
+    KernelChoice choice{choose_device(device), {}};
     choice.build.lanes = lanes_for(choice.pick.info, scene.strategy.lanes, scene.strategy.math);
     choice.build.math = scene.strategy.math;
     return choice;
@@ -115,10 +141,10 @@ void set_crop(Camera &camera, const std::string &crop) {
     try {
         std::ranges::transform(words, std::back_inserter(numbers), parse_integer);
     } catch (const Error &error) {
-        throw Error(fmt::format("--crop {}: {}", crop, error.what()));
+        throw UsageError(fmt::format("--crop {}: {}", crop, error.what()));
     }
     if (numbers.size() != 4)
-        throw Error(fmt::format("--crop {}: wants X,Y,W,H, four whole numbers of pixels", crop));
+        throw UsageError(fmt::format("--crop {}: wants X,Y,W,H, four whole numbers of pixels", crop));
     const int x = numbers[0], y = numbers[1], width = numbers[2], height = numbers[3];
     if (x < 0 || y < 0 || width < 1 || height < 1 || width > camera.width - x || height > camera.height - y)
         throw Error(

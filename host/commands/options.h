@@ -15,11 +15,19 @@ struct SceneOptions {
     std::string cl_dir; // empty: the embedded kernels
 };
 
-// --integrator, a flag for each strategy option, --lenient, --dialect, --cl-dir.
+// --integrator, a flag for each strategy option, --lenient, --dialect, -D, --cl-dir.
 std::vector<OptionRow> strategy_rows(SceneOptions &options);
 // SCENE.xml, then strategy_rows.
 std::vector<OptionRow> scene_rows(SceneOptions &options);
-OptionRow device_row(std::string &device); // --device, for pick_device
+
+struct DeviceOptions {
+    std::string name;     // for pick_device
+    unsigned threads = 0; // 0: all
+};
+OptionRow device_row(DeviceOptions &device);  // --device
+OptionRow threads_row(DeviceOptions &device); // --threads
+DevicePick choose_device(const DeviceOptions &device);
+
 OptionRow cl_dir_row(std::string &cl_dir); // --cl-dir, for load_sources
 
 // Loads the scene, applies the overrides and checks the strategy. Throws Error.
@@ -29,7 +37,7 @@ struct KernelChoice {
     DevicePick pick;
     BuildOptions build;
 };
-KernelChoice choose_kernel(const std::string &device, const SceneDescription &scene);
+KernelChoice choose_kernel(const DeviceOptions &device, const SceneDescription &scene);
 
 // The kernels' sources in that folder; empty: the embedded ones.
 Sources load_sources(const std::string &cl_dir);

@@ -6,6 +6,7 @@
 #include "base/signals.h"
 #include "base/units.h"
 #include "commands/commands.h"
+#include "commands/json_file.h"
 #include "commands/options.h"
 #include "flatten/flat_scene.h"
 #include "flatten/scene_warnings.h"
@@ -28,7 +29,8 @@ namespace {
 struct Options {
     SceneOptions scene;
     std::vector<std::string> scenes;
-    std::string device, out, crop, json, layers, time, time_limit, target_error, strategy, tonemap = "srgb";
+    DeviceOptions device;
+    std::string out, crop, json, layers, time, time_limit, target_error, strategy, tonemap = "srgb";
     unsigned spp = 0, width = 0, height = 0; // 0: the scene's
     unsigned seed = 0;
     double exposure = 0; // EV
@@ -97,7 +99,7 @@ struct ImageFiles {
 
 bool names_folder(const std::string &out) { return out.ends_with('/') || std::filesystem::is_directory(out); }
 
-// The files that -o asks for. Throws Error if it names no format that Opal writes.
+// The files that -o asks for. Throws UsageError if it names no format that Opal writes.
 ImageFiles image_files(const Options &o, const std::filesystem::path &scene) {
     if (o.out == "-")
         return {.exr = {}, .png = {}, .to_stdout = true};
@@ -111,7 +113,7 @@ ImageFiles image_files(const Options &o, const std::filesystem::path &scene) {
     if (ending == ".png")
         return {.exr = {}, .png = file};
     if (ending != ".exr")
-        throw Error(
+        throw UsageError(
             fmt::format("-o {}: the ending {}; possible: FILE.exr (an EXR and a PNG beside it), FILE.png (only a "
                         "PNG), FOLDER/, - (an EXR to stdout)",
                         o.out, ending.empty() ? "is missing" : "'" + ending + "' names no format of Opal's"));
@@ -119,18 +121,18 @@ ImageFiles image_files(const Options &o, const std::filesystem::path &scene) {
             .png = o.no_png ? std::filesystem::path() : std::filesystem::path(file).replace_extension(".png")};
 }
 
-// Throws Error if options that say what is written contradict each other.
+// Throws UsageError if options that say what is written contradict each other.
 void check_output(const Options &o, const ImageFiles &files) {
     if (files.to_stdout && o.json == "-")
-        throw Error("-o - and --json -: stdout takes one of them");
+        throw UsageError("-o - and --json -: stdout takes one of them");
     if (files.exr.empty() && !files.to_stdout) {
         if (o.no_png)
-            throw Error(fmt::format("-o {} and --no-png: nothing would be written", o.out));
+            throw UsageError(fmt::format("-o {} and --no-png: nothing would be written", o.out));
         if (!o.layers.empty())
-            throw Error(fmt::format("--layers {}: a PNG holds no layers; give -o FILE.exr", o.layers));
+            throw UsageError(fmt::format("--layers {}: a PNG holds no layers; give -o FILE.exr", o.layers));
     }
     if (files.png.empty() && (o.exposure != 0 || o.tonemap != "srgb"))
-        throw Error("--exposure and --tonemap: they shape the PNG, and none is written");
+        throw UsageError("--exposure and --tonemap: they shape the PNG, and none is written");
 }
 
 // The request of a render, checked before a device is opened.
@@ -139,8 +141,8 @@ struct Request {
     StopRule rule;
     unsigned spp; // 0: the rule alone decides
     ImageFiles files;
-    Display display;            // of the PNG
-    std::filesystem::path json; // empty: not written
+    Display display;  // of the PNG
+    std::string json; // for write_json
     double load_seconds;
 };
 
@@ -158,9 +160,10 @@ Request prepare(const Options &o) {
         scene.spp = o.spp;
     request.spp = request.rule.given() && !o.spp ? 0 : scene.spp;
     request.json = o.json;
+    prepare_json(o.json);
     if (names_folder(o.out))
         make_folder(o.out);
-    for (const std::filesystem::path &file : {request.files.exr, request.files.png, request.json})
+    for (const std::filesystem::path &file : {request.files.exr, request.files.png})
         if (!file.empty())
             check_writable(file);
     request.load_seconds = load.seconds();
@@ -200,8 +203,7 @@ int report(const Request &request, const RenderedFilm &rendered, const RenderRep
     const Stopwatch write;
     write_image(image, request.files, request.display);
     json["seconds"]["write"] = write.seconds();
-    if (!request.json.empty())
-        write_safely(request.json, dump(json, 2) + "\n");
+    write_json(request.json, "render", json);
 
     info(render.text());
     if (request.rule.given()) {
@@ -244,18 +246,19 @@ int render_scene(const Options &o) {
                   o.layers == "variance");
 }
 
-// Throws Error if the images of several scenes cannot go to files of their own.
+// Throws UsageError if the images of several scenes cannot go to files of their own.
 void check_several(const Options &o) {
     if (!names_folder(o.out))
-        throw Error(fmt::format("{} scenes: their images need a folder, -o FOLDER/", o.scenes.size()));
+        throw UsageError(fmt::format("{} scenes: their images need a folder, -o FOLDER/", o.scenes.size()));
     if (!o.json.empty())
-        throw Error(fmt::format("--json {}: holds one render, and there are {} scenes; the header of each EXR has the "
-                                "same statistics",
-                                o.json, o.scenes.size()));
+        throw UsageError(
+            fmt::format("--json {}: holds one render, and there are {} scenes; the header of each EXR has the "
+                        "same statistics",
+                        o.json, o.scenes.size()));
     std::map<std::string, std::string> scene_of;
     for (const std::string &scene : o.scenes)
         if (const auto [other, is_new] = scene_of.try_emplace(image_files(o, scene).text(), scene); !is_new)
-            throw Error(fmt::format("{} and {}: both images would be {}", other->second, scene, other->first));
+            throw UsageError(fmt::format("{} and {}: both images would be {}", other->second, scene, other->first));
 }
 
 void tell_errors(const std::exception &error) {
@@ -312,6 +315,7 @@ Command render_command() {
                      .many_words = true}},
                    strategy_rows(o->scene)),
             {device_row(o->device),
+             threads_row(o->device),
              {.flags = "-o,--output",
               .target = &o->out,
               .help = "FILE.exr: an EXR, and a PNG beside it; FILE.png: only a PNG; FOLDER/: both, by the scene's "
@@ -331,22 +335,25 @@ Command render_command() {
               .check = OneOf<std::string>{{"srgb", "aces"}}},
              {.flags = "--spp",
               .target = &o->spp,
-              .help = "Samples per pixel (default: the scene's sampleCount)",
+              .help = "Samples per pixel [the scene's sampleCount]",
               .check = Range{1u, 0xffffffffu}},
              {.flags = "--time",
               .target = &o->time,
               .help = "Stop after this much kernel time (30s, 2min); --spp is then the most",
+              .check = Accepts{parse_seconds},
               .type = "TIME"},
              {.flags = "--target-error",
               .target = &o->target_error,
               .help = "Stop when the relative standard error of the image's mean luminance is below this (1%)\n"
                       "  A pilot of other samples decides how many, so that the image stays unbiased",
+              .check = Accepts{parse_fraction},
               .type = "ERROR",
               .excludes = "--time"},
              {.flags = "--time-limit",
               .target = &o->time_limit,
               .help = "Stop rendering this long after the start of the process, by the wall clock: loading and "
                       "compiling count, writing comes after; --spp is then the most",
+              .check = Accepts{parse_seconds},
               .type = "TIME",
               .excludes = "--target-error"},
              {.flags = "--strategy",
@@ -355,17 +362,14 @@ Command render_command() {
               .check = OneOf<std::string>{{"auto"}}},
              {.flags = "--width",
               .target = &o->width,
-              .help = "Pixels (default: the scene's; one of both keeps its aspect)",
+              .help = "Pixels; one of both keeps the aspect [the scene's]",
               .check = Range{1, 65535}},
-             {.flags = "--height",
-              .target = &o->height,
-              .help = "Pixels (default: the scene's)",
-              .check = Range{1, 65535}},
+             {.flags = "--height", .target = &o->height, .help = "Pixels [the scene's]", .check = Range{1, 65535}},
              crop_row(o->crop),
              {.flags = "--seed",
               .target = &o->seed,
               .help = "Of the random numbers; the same seed gives the same image"},
-             {.flags = "--json", .target = &o->json, .help = "File for the statistics of the render"},
+             json_row(o->json, "the statistics of the render"),
              {.flags = "--layers",
               .target = &o->layers,
               .help = "More layers for the EXR: variance (of each pixel's mean)",
@@ -375,6 +379,8 @@ Command render_command() {
               .target = &o->verbose,
               .help = "Print what the driver remarks on the kernels, too",
               .excludes = "--quiet"}}),
+        .examples = {"opal render scenes/cbox_mis.xml --spp 64 -o box.exr",
+                     "opal scenes/mixed_room.xml --time 30s --width 400"},
         .run = [o] { return run(*o); }};
 }
 

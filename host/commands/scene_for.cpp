@@ -188,6 +188,7 @@ Command scene_for_command() {
                          .help = "Meshes to show, by file names that hold in the scene's folder",
                          .required = true,
                          .many_words = true}},
+            .examples = {"opal scene-for model.obj > scene.xml", "opal scene-for cup.obj saucer.obj > scene.xml"},
             .run = [files] { return run(*files); }};
 }
 

@@ -1,11 +1,13 @@
 // opal selftest: does this device compute right? Each group of checks runs in a process of its own.
 #include "selftest/selftest.h"
+#include "base/exit_code.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/process.h"
 #include "base/progress.h"
 #include "base/table.h"
 #include "commands/commands.h"
+#include "commands/json_file.h"
 #include "commands/options.h"
 #include "device/ask_driver.h"
 #include "device/info_json.h"
@@ -25,7 +27,8 @@ namespace {
 const std::string line_mark = "opal-finding "; // drivers print to stdout too
 
 struct Options {
-    std::string device, json, cl_dir;
+    DeviceOptions device;
+    std::string json, cl_dir;
     std::vector<std::string> groups; // none: all
     bool full = false, quick = false;
     double time_limit = 0;
@@ -207,13 +210,8 @@ nlohmann::json SelftestReport::json() const {
 }
 
 int run(const Options &o) {
-    if (o.full && o.quick)
-        throw Error("--quick and --full exclude each other");
-    for (const std::string &group : o.groups)
-        find_row(check_groups(), "group", group);
-    if (!o.json.empty())
-        check_writable(o.json);
-    const DevicePick pick = pick_device(o.device, list_devices());
+    prepare_json(o.json);
+    const DevicePick pick = choose_device(o.device);
     info(fmt::format("device  {}", text_of(pick)));
     const std::vector<Variant> variants = variants_of(pick.info);
     std::vector<Job> jobs;
@@ -226,9 +224,8 @@ int run(const Options &o) {
     const SelftestReport report{pick.info, variants, jobs,
                                 std::chrono::duration<double>(ChildProcess::Clock::now() - begun).count()};
     print_text(report.text());
-    if (!o.json.empty())
-        write_safely(o.json, dump(report.json(), 2) + "\n");
-    return report.passed() ? 0 : 1;
+    write_json(o.json, "selftest", report.json());
+    return report.passed() ? exit_done : exit_check_failed;
 }
 
 // The hidden command that a job runs: one group, whose findings it prints.
@@ -268,19 +265,25 @@ Command selftest_command() {
     return {.name = "selftest",
             .help = "Check that a device and its driver compute right",
             .options = {device_row(o->device),
-                        {.flags = "--quick", .target = &o->quick, .help = "Less than a minute (default)"},
-                        {.flags = "--full", .target = &o->full, .help = "More cases, more samples: minutes"},
+                        {.flags = "--quick", .target = &o->quick, .help = "Less than a minute [this, unless --full]"},
+                        {.flags = "--full",
+                         .target = &o->full,
+                         .help = "More cases, more samples: minutes",
+                         .excludes = "--quick"},
                         {.flags = "--group",
                          .target = &o->groups,
                          .help = "Only this group of checks; may be repeated" + groups,
+                         .check = Accepts{[](const std::string &name) { find_row(check_groups(), "group", name); },
+                                          names_of(check_groups())},
                          .type = "NAME"},
                         {.flags = "--time-limit",
                          .target = &o->time_limit,
                          .help = "Seconds for each group of checks [120, or 1200 with --full]",
                          .check = Positive{}},
                         {.flags = "--seed", .target = &o->seed, .help = "Of the random numbers"},
-                        {.flags = "--json", .target = &o->json, .help = "File for the findings"},
+                        json_row(o->json, "the findings"),
                         cl_dir_row(o->cl_dir)},
+            .examples = {"opal selftest", "opal selftest --full --device gpu --json selftest.json"},
             .run = [o] { return run(*o); }};
 }
 

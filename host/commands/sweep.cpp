@@ -6,6 +6,7 @@
 #include "base/log.h"
 #include "base/read_file.h"
 #include "base/signals.h"
+#include "base/table.h"
 #include "base/units.h"
 #include "commands/commands.h"
 #include "commands/options.h"
@@ -33,30 +34,25 @@ struct Options {
     SceneOptions scene;
     std::vector<std::string> strategies, math;
     std::vector<unsigned> spp = {4, 16, 64};
-    unsigned replicates = 5, seed = 0, reference_spp = 0, width = 0;
+    unsigned replicates = 5, seed = 0, reference_spp = 0, width = 0, threads = 0;
     std::vector<std::string> devices;
     std::string reference, crop, budget, out, clock = "kernel";
     bool quiet = false;
 };
 
-// The identity of a sweep, by which it is resumed: a hash of the scene's text, its resolved strategy and its meshes.
+// The identity of a sweep, by which it is resumed: a hash of the scene's text, its values of -D, its resolved strategy
+// and its meshes.
 std::string hash_of(const SceneDescription &scene) {
     std::string bytes = read_file(scene.file);
     bytes += dump(strategy_json(scene));
+    if (!scene.definitions.empty())
+        bytes += dump(scene.definitions);
     for (const Mesh &mesh : scene.meshes)
         if (const auto *m = std::get_if<TriangleMesh>(&mesh.shape))
             bytes.append(reinterpret_cast<const char *>(m->positions.data()), m->positions.size() * sizeof(Vec3));
     Fnv1a hash;
     hash.add(std::as_bytes(std::span(bytes)));
     return fmt::format("{:016x}", hash.value());
-}
-
-void check_numbers(const Options &o) {
-    if (o.replicates < 2)
-        throw Error(fmt::format("--replicates {}: an interval needs at least 2", o.replicates));
-    for (unsigned spp : o.spp)
-        if (spp < 1 || spp > first_pilot_sample)
-            throw Error(fmt::format("--spp {}: possible are 1 to {}", spp, first_pilot_sample));
 }
 
 Image read_reference(const std::string &file, const SceneDescription &scene) {
@@ -84,8 +80,11 @@ SweepRecord fresh_record(const Options &o, const SceneDescription &scene, const 
     r.scene = scene.file.string();
     r.scene_hash = hash_of(scene);
     r.dialect = name_of(scene.dialect);
+    r.definitions = scene.definitions;
     for (const DevicePick &d : devices)
-        r.devices.push_back({d.info.index, d.info.name, d.info.driver});
+        r.devices.push_back({d.info.index,
+                             d.info.threads ? fmt::format("{}, threads: {}", d.info.name, d.info.threads) : d.info.name,
+                             d.info.driver});
     r.reference_file = o.reference;
     r.clock = o.clock;
     r.width = scene.camera.width;
@@ -106,6 +105,8 @@ std::vector<DevicePick> pick_devices(const Options &o) {
     std::vector<DevicePick> picks;
     for (const std::string &wanted : o.devices.empty() ? std::vector<std::string>{""} : o.devices) {
         picks.push_back(pick_device(wanted, known));
+        if (o.threads)
+            picks.back().info = with_threads(picks.back().info, o.threads);
         for (size_t i = 0; i + 1 < picks.size(); i++)
             if (picks[i].info.index == picks.back().info.index)
                 throw Error(fmt::format("--device: '{}' and '{}' are the same device, {}", o.devices[i], wanted,
@@ -188,11 +189,10 @@ int run_part_apart(Part part, const SweepPlan &plan, const DevicePick &pick, con
 
 int run(const Options &o) {
     set_quiet(o.quiet);
-    check_numbers(o);
     SceneDescription scene = load_scene(o.scene);
     set_size(scene.camera, o.width, 0);
     set_crop(scene.camera, o.crop);
-    const std::vector<Candidate> strategies = parse_strategies(scene, o.strategies, o.math);
+    const std::vector<Candidate> strategies = as_usage([&] { return parse_strategies(scene, o.strategies, o.math); });
     const Sources sources = load_sources(o.scene.cl_dir);
     SweepPlan plan{.folder = {},
                    .seed = o.seed,
@@ -240,8 +240,9 @@ Command sweep_command() {
             {{.flags = "--math",
               .target = &o->math,
               .help = "Cross the strategies with these: precise,fast",
+              .check = Accepts{[](const std::string &name) { find_row(math_modes(), "math", name); },
+                               names_of(math_modes())},
               .type = "MODE,...",
-              .group = "Strategy",
               .comma_separated = true},
              {.flags = "--device",
               .target = &o->devices,
@@ -249,6 +250,10 @@ Command sweep_command() {
                       "[the first GPU, else the CPU]",
               .type = "DEVICE,...",
               .comma_separated = true},
+             {.flags = "--threads",
+              .target = &o->threads,
+              .help = "Threads that CPU devices may use [all that `opal devices` shows as units]",
+              .check = Range{1u, 65535u}},
              {.flags = "--strategies",
               .target = &o->strategies,
               .help = "course, all, or lists axis=value,... after the scene; the first is the baseline [course]\n"
@@ -259,11 +264,13 @@ Command sweep_command() {
              {.flags = "--spp",
               .target = &o->spp,
               .help = "Samples per pixel of the points",
+              .check = Range{1u, first_pilot_sample},
               .type = "N,...",
               .comma_separated = true},
              {.flags = "--replicates",
               .target = &o->replicates,
-              .help = "Renders of each point, with seeds of their own; at least 2"},
+              .help = "Renders of each point, with seeds of their own; an interval needs at least 2",
+              .check = Range{2u, 1000000u}},
              {.flags = "--seed", .target = &o->seed, .help = "Of the first replicate's random numbers"},
              {.flags = "--reference",
               .target = &o->reference,
@@ -275,6 +282,7 @@ Command sweep_command() {
              {.flags = "--budget",
               .target = &o->budget,
               .help = "Kernel time for all of it: leaves out the largest --spp until it fits",
+              .check = Accepts{parse_seconds},
               .type = "TIME"},
              {.flags = "--clock",
               .target = &o->clock,
@@ -283,7 +291,7 @@ Command sweep_command() {
               .check = OneOf<std::string>{{"kernel", "cpu"}}},
              {.flags = "--width",
               .target = &o->width,
-              .help = "Pixels; keeps the aspect (default: the scene's)",
+              .help = "Pixels; keeps the aspect [the scene's]",
               .check = Range{1, 65535}},
              crop_row(o->crop),
              {.flags = "-o,--output",
@@ -291,6 +299,8 @@ Command sweep_command() {
               .help = "Folder; a sweep that is there already goes on [SCENE_sweep]",
               .type = "FOLDER"},
              {.flags = "--quiet", .target = &o->quiet, .help = "Print the verdict, warnings and errors only"}}),
+        .examples = {"opal sweep scenes/cbox_mis.xml",
+                     "opal sweep scenes/mixed_room.xml --strategies all --budget 10min -o sweep"},
         .run = [o] { return run(*o); }};
 }
 

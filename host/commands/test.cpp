@@ -1,8 +1,10 @@
 // opal test: Nori's <test> files on a device.
+#include "base/exit_code.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "commands/commands.h"
+#include "commands/json_file.h"
 #include "commands/options.h"
 #include "conformance/conformance.h"
 #include "image/image.h"
@@ -18,7 +20,8 @@ namespace {
 struct Options {
     SceneOptions scene;
     std::vector<std::string> files;
-    std::string device, json;
+    DeviceOptions device;
+    std::string json;
     int samples = 0;
     double significance = 0;
     unsigned seed = 0;
@@ -47,15 +50,14 @@ nlohmann::json json_of(const ConformanceCase &c) {
 }
 
 int run(const Options &o) {
-    if (!o.json.empty())
-        check_writable(o.json);
+    prepare_json(o.json);
     std::vector<TestDescription> tests; // all are read first, so that a mistake in the last is reported at once
     for (const std::string &file : o.files)
         tests.push_back(load_test(file, o.scene.load));
 
     Strategy strategy;
     override_strategy(strategy, o.scene.overrides);
-    const DevicePick pick = pick_device(o.device, list_devices());
+    const DevicePick pick = choose_device(o.device);
     const Device device = open_device(pick.info);
     const Sources sources = load_sources(o.scene.cl_dir);
     ConformanceOptions options;
@@ -91,9 +93,8 @@ int run(const Options &o) {
                                           {"cases", results}}));
     }
     print("{} of {} cases passed\n", cases - rejected, cases);
-    if (!o.json.empty())
-        write_safely(o.json, dump(report, 2) + "\n");
-    return rejected ? 1 : 0;
+    write_json(o.json, "test", report);
+    return rejected ? exit_check_failed : exit_done;
 }
 
 } // namespace
@@ -108,6 +109,7 @@ Command test_command() {
                                 .type = "",
                                 .required = true},
                                device_row(o->device),
+                               threads_row(o->device),
                                {.flags = "--samples",
                                 .target = &o->samples,
                                 .help = "Of each mean or histogram [the file's sampleCount]",
@@ -117,8 +119,10 @@ Command test_command() {
                                 .help = "Level of each file, split over its cases [the file's]",
                                 .check = Range{1e-12, 0.5}},
                                {.flags = "--seed", .target = &o->seed, .help = "Of the random numbers"},
-                               {.flags = "--json", .target = &o->json, .help = "File for the results"}},
+                               json_row(o->json, "the results")},
                               strategy_rows(o->scene)),
+            .examples = {"opal test tests/cases/conformance/furnace.xml",
+                         "opal test my_test.xml --significance 0.001 --json test.json"},
             .run = [o] { return run(*o); }};
 }
 

@@ -1,10 +1,12 @@
 // opal verify: do all unbiased strategies agree on a scene?
 #include "base/error.h"
+#include "base/exit_code.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "base/signals.h"
 #include "commands/commands.h"
+#include "commands/json_file.h"
 #include "commands/options.h"
 #include "compare/agreement.h"
 #include "flatten/features.h"
@@ -22,7 +24,8 @@ constexpr unsigned strata = 1024; // of the stratified sampler, which repeats af
 
 struct Options {
     SceneOptions scene;
-    std::string device, strategies, out, json;
+    DeviceOptions device;
+    std::string strategies, out, json;
     double budget = 60, significance = 1e-3;
     int width = 0, height = 0;
     unsigned seed = 0;
@@ -55,10 +58,11 @@ void simplify_image(Camera &camera, const Options &o) {
 }
 
 std::vector<NamedStrategy> choose(const SceneDescription &scene, const Options &o) {
-    std::vector<NamedStrategy> strategies =
-        o.strategies.empty() ? sensible_strategies(scene) : named_strategies(scene, o.strategies);
+    std::vector<NamedStrategy> strategies = o.strategies.empty()
+                                                ? sensible_strategies(scene)
+                                                : as_usage([&] { return named_strategies(scene, o.strategies); });
     if (strategies.size() < 2)
-        throw Error(
+        throw UsageError(
             fmt::format("nothing to hold against each other: {} strategy; --strategies names at least two, as in "
                         "lighting=mis,mis=power;lighting=emitter",
                         strategies.size()));
@@ -138,10 +142,9 @@ int run(const Options &o) {
     const std::filesystem::path folder = o.out.empty() ? "verify_" + scene.file.stem().string() : o.out;
     if (!std::filesystem::is_directory(folder))
         check_writable(folder);
-    if (!o.json.empty())
-        check_writable(o.json);
+    prepare_json(o.json);
 
-    const DevicePick pick = pick_device(o.device, list_devices());
+    const DevicePick pick = choose_device(o.device);
     info(fmt::format("verify  {}: {} strategies, {} x {} pixels, {} in all, seed {}", scene.file.string(),
                      strategies.size(), scene.camera.width, scene.camera.height, duration_text(o.budget), o.seed));
     info(fmt::format("device  {}", text_of(pick)));
@@ -166,6 +169,7 @@ int run(const Options &o) {
     nlohmann::json report = json_of(agreement, renders);
     report.update(object({{"scene", scene.file.string()},
                           {"dialect", name_of(scene.dialect)},
+                          {"definitions", scene.definitions},
                           {"device", pick.info.name},
                           {"driver", pick.info.driver},
                           {"seed", o.seed},
@@ -175,9 +179,8 @@ int run(const Options &o) {
     print_text(text_of(agreement, renders));
     if (!agreement.holds() || !o.out.empty())
         leave_evidence(folder, agreement, renders, report);
-    if (!o.json.empty())
-        write_safely(o.json, dump(report, 2) + "\n");
-    return agreement.holds() ? 0 : 1;
+    write_json(o.json, "verify", report);
+    return agreement.holds() ? exit_done : exit_check_failed;
 }
 
 } // namespace
@@ -190,10 +193,12 @@ Command verify_command() {
         .options = append(
             scene_rows(o->scene),
             {device_row(o->device),
+             threads_row(o->device),
              {.flags = "--strategies",
               .target = &o->strategies,
               .help = "Those to test, 'lighting=mis,mis=power;lighting=emitter' [all that make sense here, or where "
-                      "these are more than 12 a set in which each pair of choices occurs]"},
+                      "these are more than 12 a set in which each pair of choices occurs]",
+              .type = "STRATEGIES"},
              {.flags = "--budget",
               .target = &o->budget,
               .help = "Time for all strategies together: 60s, 2min, 1h",
@@ -208,13 +213,16 @@ Command verify_command() {
               .target = &o->width,
               .help = "Pixels [32 on the longer side, the scene's aspect]",
               .check = Range{1, 65535}},
-             {.flags = "--height", .target = &o->height, .help = "Pixels", .check = Range{1, 65535}},
+             {.flags = "--height", .target = &o->height, .help = "Pixels [as --width]", .check = Range{1, 65535}},
              {.flags = "--seed", .target = &o->seed, .help = "Of the random numbers"},
              {.flags = "-o,--output",
               .target = &o->out,
-              .help = "Folder for the evidence [verify_SCENE, on disagreement only]"},
-             {.flags = "--json", .target = &o->json, .help = "File for the results"},
+              .help = "Folder for the evidence [verify_SCENE, on disagreement only]",
+              .type = "FOLDER"},
+             json_row(o->json, "the results"),
              {.flags = "--quiet", .target = &o->quiet, .help = "Print nothing but the verdict, warnings and errors"}}),
+        .examples = {"opal verify scenes/cbox_mis.xml",
+                     "opal verify scenes/mixed_room.xml --budget 5min --json verify.json"},
         .run = [o] { return run(*o); }};
 }
 

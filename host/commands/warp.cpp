@@ -1,7 +1,10 @@
 // opal warp: tests samples of a warp, BSDF or light against their density, and draws both.
+#include "base/exit_code.h"
+#include "base/json.h"
 #include "base/log.h"
 #include "base/table.h"
 #include "commands/commands.h"
+#include "commands/json_file.h"
 #include "commands/options.h"
 #include "densities/plot.h"
 #include "densities/targets.h"
@@ -13,7 +16,8 @@ namespace opal {
 namespace {
 
 struct Options {
-    std::string name, device, plot, math = "precise", cl_dir;
+    DeviceOptions device;
+    std::string name, plot, json, math = "precise", cl_dir;
     std::map<std::string, std::string> parameters, axes;
     bool list = false;
     int cells = 40, lanes = 0;
@@ -23,7 +27,7 @@ struct Options {
 
 int print_list() {
     for (const TargetName &row : targets())
-        print("{:<20} {}\n", row.name, row.parameters);
+        print("{:<20} {}{}\n", row.name, row.help, row.parameters.empty() ? "" : "; parameters " + row.parameters);
     return 0;
 }
 
@@ -42,15 +46,35 @@ void print_figures(const Target &target, const DensityCheck &check, const Option
                                           : fmt::format("accepted at level {:g}\n", o.significance));
 }
 
+nlohmann::json json_of(const Target &target, const DensityCheck &check, const Options &o) {
+    const stats::TestResult &r = check.test.result;
+    return object({{"target", target_name(o.name)},
+                   {"description", target.description},
+                   {"domain", target.sampled.domain->name},
+                   {"samples", check.histogram.n()},
+                   {"cells", o.cells},
+                   {"seed", o.seed},
+                   {"integral", check.test.mass.value},
+                   {"integral_error", check.test.mass.error},
+                   {"failed", check.histogram.failed},
+                   {"outside", check.histogram.outside},
+                   {"statistic", r.statistic},
+                   {"dof", r.dof},
+                   {"p_value", r.p_value},
+                   {"significance", o.significance},
+                   {"passed", !r.rejected(o.significance)},
+                   {"reason", r.reason}});
+}
+
 int run(const Options &o) {
     if (o.list)
         return print_list();
     if (o.name.empty())
-        throw Error("opal warp needs a name; available: " + joined(names_of(targets())));
+        throw UsageError("opal warp needs a name; available: " + joined(names_of(targets())));
+    prepare_json(o.json);
     if (!o.plot.empty())
         check_writable(o.plot);
-    find_row(targets(), "warp", o.name);
-    const DevicePick pick = pick_device(o.device, list_devices());
+    const DevicePick pick = choose_device(o.device);
     const Device device = open_device(pick.info);
     BuildOptions build;
     build.lanes = o.lanes ? o.lanes : pick.info.native_lanes;
@@ -58,15 +82,16 @@ int run(const Options &o) {
     const Sources sources = load_sources(o.cl_dir);
     info(fmt::format("device  {}, {} lanes, math {}", text_of(pick), build.lanes, o.math));
 
-    Target target = open_target(o.name, o.parameters, o.axes, device, build, sources);
+    Target target = open_target(target_name(o.name), o.parameters, o.axes, device, build, sources);
     const DensityCheck check =
         check_density(*target.probe, target.sampled, o.cells, o.cells, size_t(o.samples), o.seed);
     print_figures(target, check, o);
+    write_json(o.json, "warp", json_of(target, check, o));
     if (!o.plot.empty())
         write_png(plot_density(target.sampled, check,
                                fmt::format("{}   P = {:.3g}", target.description, check.test.result.p_value)),
                   o.plot);
-    return check.test.result.rejected(o.significance) ? 1 : 0;
+    return check.test.result.rejected(o.significance) ? exit_check_failed : exit_done;
 }
 
 } // namespace
@@ -76,18 +101,22 @@ Command warp_command() {
     std::vector<OptionRow> rows = {
         {.flags = "NAME",
          .target = &o->name,
-         .help = "What to draw: a warp, bsdf:TYPE or light:KIND (--list)",
+         .help = "What to draw: a warp, bsdf:TYPE or light:KIND (--list); Nori's names (square_to_tent) are known, too",
+         .check = Accepts{[](const std::string &name) { find_row(targets(), "warp", target_name(name)); },
+                          names_of(targets())},
          .type = ""},
         {.flags = "--list", .target = &o->list, .help = "List the names and their parameters"}};
     for (const TargetParameter &row : target_parameters())
         rows.push_back({.flags = "--" + row.name,
                         .target = MapEntry{&o->parameters, row.name},
                         .help = row.help,
+                        .type = "VALUE",
                         .group = "Parameters"});
     for (const char *axis : {"triangle-choice", "emitter-choice"})
         rows.push_back({.flags = std::string("--") + axis,
                         .target = MapEntry{&o->axes, axis},
                         .help = "of light:..., as opal render has it",
+                        .type = "NAME",
                         .group = "Parameters"});
     return {
         .name = "warp",
@@ -101,7 +130,11 @@ Command warp_command() {
               .help = "Level of the test",
               .check = Range{1e-12, 0.5}},
              {.flags = "--seed", .target = &o->seed, .help = "Of the random numbers"},
-             {.flags = "--plot", .target = &o->plot, .help = "PNG of the samples' density, the pdf and the residual"},
+             {.flags = "--plot",
+              .target = &o->plot,
+              .help = "PNG of the samples' density, the pdf and the residual",
+              .type = "FILE"},
+             json_row(o->json, "the figures"),
              {.flags = "--lanes",
               .target = &o->lanes,
               .help = "Width [the device's]",
@@ -111,7 +144,9 @@ Command warp_command() {
               .help = "precise or fast",
               .check = OneOf<std::string>{{"precise", "fast"}}},
              cl_dir_row(o->cl_dir),
-             device_row(o->device)}),
+             device_row(o->device),
+             threads_row(o->device)}),
+        .examples = {"opal warp cosine_hemisphere", "opal warp bsdf:microfacet --alpha 0.1 --plot lobe.png"},
         .run = [o] { return run(*o); }};
 }
 

@@ -26,6 +26,16 @@ using Parameters = std::map<std::string, std::string>;
 const std::vector<TargetName> warp_names = {OPAL_WARPS(OPAL_NO_PARAMETER, OPAL_NO_PARAMETER, OPAL_PARAMETER)};
 const std::pair<const char *, float> warp_defaults[] = {OPAL_WARPS(OPAL_NO_DEFAULT, OPAL_NO_DEFAULT, OPAL_DEFAULT)};
 
+// What the warps sample. A warp without a row here has no help, which a test finds.
+const std::map<std::string, std::string> warp_help = {
+    {"tent", "points of [-1, 1]^2, density (1 - |x|) (1 - |y|)"},
+    {"uniform_disk", "points of the unit disk, density 1 / pi"},
+    {"uniform_sphere", "directions, density 1 / (4 pi)"},
+    {"uniform_hemisphere", "directions above the surface, density 1 / (2 pi)"},
+    {"cosine_hemisphere", "directions above the surface, density cos(theta) / pi"},
+    {"beckmann", "microfacet normals m, density D(m) cos(theta) of roughness alpha"},
+    {"phong_lobe", "directions about the axis, density (n + 1) / (2 pi) cos^n"}};
+
 double number_of(const Parameters &parameters, const std::string &name, double otherwise) {
     const auto found = parameters.find(name);
     return found == parameters.end() ? otherwise : parse_number(found->second);
@@ -184,16 +194,22 @@ std::string names_of(std::span<const Parameter> parameters) {
 
 std::vector<TargetName> all_targets() {
     std::vector<TargetName> names = warp_names;
+    for (TargetName &warp : names)
+        if (const auto help = warp_help.find(warp.name); help != warp_help.end())
+            warp.help = help->second;
     for (uint kind = 0; kind < BSDF_COUNT; kind++)
         if (bsdf_traits(kind) & OPAL_SMOOTH) {
             const std::string own = names_of(bsdf_parameters(kind));
-            names.push_back({fmt::format("bsdf:{}", bsdf_name(kind)), own + (own.empty() ? "" : ", ") + "theta, phi"});
+            names.push_back({fmt::format("bsdf:{}", bsdf_name(kind)), own + (own.empty() ? "" : ", ") + "theta, phi",
+                             "reflected directions of the material for an incident direction"});
         }
     for (const LightRow &light : lights)
-        names.push_back({"light:" + std::string(light.name), "triangle-choice, emitter-choice"});
+        names.push_back({"light:" + std::string(light.name), "triangle-choice, emitter-choice",
+                         "directions to points of such lights, per solid angle"});
     for (uint kind = 0; kind < EMITTER_COUNT; kind++)
         if (is_light_target(kind))
-            names.push_back({fmt::format("light:{}", emitter_name(kind)), names_of(emitter_parameters(kind))});
+            names.push_back({fmt::format("light:{}", emitter_name(kind)), names_of(emitter_parameters(kind)),
+                             "directions to the light"});
     return names;
 }
 
@@ -234,6 +250,11 @@ Light light_of_parameters(uint kind, const Parameters &parameters) {
     const std::string name = emitter_name(kind);
     const XmlDocument document = xml_of("emitter", name, emitter_parameters(kind), parameters, "light:" + name);
     return parse_scene_emitter(document.root(), {});
+}
+
+std::string target_name(const std::string &typed) {
+    const std::string_view prefix = "square_to_";
+    return typed.starts_with(prefix) ? typed.substr(prefix.size()) : typed;
 }
 
 const std::vector<TargetName> &targets() {

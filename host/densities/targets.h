@@ -18,8 +18,11 @@ struct Target {
 struct TargetName {
     std::string name;       // "beckmann", "bsdf:phong", "light:mesh"
     std::string parameters; // "alpha" ...
+    std::string help{};     // what is sampled, and its density
 };
 const std::vector<TargetName> &targets();
+// The target that is meant: Nori's names begin with "square_to_".
+std::string target_name(const std::string &typed);
 
 // An emitter of scenes by its parameters as the command line names them; what is required and not given is made up.
 Light light_of_parameters(uint kind, const std::map<std::string, std::string> &parameters);

@@ -139,6 +139,8 @@ std::vector<Driver> find_drivers() {
     return drivers.empty() ? std::vector<Driver>{Driver()} : drivers;
 }
 
+std::string loader_path() { return library_path("libOpenCL.so.1"); }
+
 std::vector<DeviceInfo> probe_drivers(const std::vector<Driver> &drivers, double time_limit) {
     using Clock = ChildProcess::Clock;
     const auto deadline =

@@ -17,6 +17,9 @@ struct Driver {
 // .icd files in $OPENCL_VENDOR_PATH or /etc/OpenCL/vendors, by name. If there are none, one Driver without a name.
 std::vector<Driver> find_drivers();
 
+// The OpenCL loader that this process uses, by the path it was found at.
+std::string loader_path();
+
 // The devices of all drivers, each asked by `opal probe-platform LIBRARY`, all at the same time. A driver that crashes
 // or takes more than time_limit seconds gives the devices that it had listed, and one with `problem`. A device that was
 // found under two names is listed once.

@@ -86,7 +86,9 @@ std::vector<DeviceInfo> list_devices(double time_limit) {
 }
 
 std::string text_of(const DevicePick &pick) {
-    return fmt::format("{} (driver {}; {})", pick.info.name, pick.info.driver, pick.reason);
+    const unsigned threads = pick.info.threads;
+    return fmt::format("{} (driver {}; {}{})", pick.info.name, pick.info.driver, pick.reason,
+                       threads ? fmt::format("; {} thread{}", threads, threads == 1 ? "" : "s") : "");
 }
 
 DevicePick pick_device(const std::string &wanted, const std::vector<DeviceInfo> &devices) {
@@ -117,6 +119,31 @@ int lanes_for(const DeviceInfo &info, int wanted, MathMode math) {
     return doubles && info.native_lanes > 4 ? info.native_lanes / 2 : info.native_lanes;
 }
 
+DeviceInfo with_threads(DeviceInfo info, unsigned threads) {
+    if (info.type != "cpu")
+        throw UsageError(fmt::format("--threads: {} is no CPU; possible for CPU devices only", info.name));
+    if (threads < 1 || threads > info.compute_units)
+        throw UsageError(
+            fmt::format("--threads: {} is out of range; {} has 1 to {}", threads, info.name, info.compute_units));
+    info.threads = info.compute_units = threads;
+    return info;
+}
+
+namespace {
+
+// A part of the device with that many compute units (device fission, OpenCL 1.2, section 4.3).
+cl::Device part_of(cl::Device &device, unsigned units) {
+    if (units == device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>())
+        return device;
+    const cl_device_partition_property counts[] = {CL_DEVICE_PARTITION_BY_COUNTS, cl_device_partition_property(units),
+                                                   CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
+    std::vector<cl::Device> parts;
+    device.createSubDevices(counts, &parts);
+    return parts.at(0);
+}
+
+} // namespace
+
 Device open_device(const DeviceInfo &info) {
     return with_device(info, [&] {
         std::optional<cl::Device> found;
@@ -127,6 +154,8 @@ Device open_device(const DeviceInfo &info) {
         });
         if (!found)
             throw Error(fmt::format("{}: the device is gone since the drivers were asked", info.name));
+        if (info.threads)
+            found = part_of(*found, info.threads);
         const cl::Context context(*found);
         const cl::CommandQueue queue(context, *found, CL_QUEUE_PROFILING_ENABLE);
         return Device{info, std::make_shared<DeviceHandles>(DeviceHandles{*found, context, queue})};

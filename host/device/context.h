@@ -17,6 +17,7 @@ struct DeviceInfo {
     bool fp64 = false;
     unsigned vector_width = 1; // floats, by the driver
     int native_lanes = 1;      // 1 on a GPU, else the widest of 1, 4, 8 and 16 that fits vector_width
+    unsigned threads = 0;      // compute units to open of a CPU device; 0: all
     std::string library;       // the driver's, by the path it was found at; empty: whatever the loader finds
     int platform_place = 0, device_place = 0; // indices in the list of that driver alone
     std::string problem; // why the platform or device could not be asked ("crashed", "timed out"), else empty
@@ -37,6 +38,10 @@ struct DevicePick {
 };
 std::string text_of(const DevicePick &pick); // "NAME (driver VERSION; REASON)"
 DevicePick pick_device(const std::string &wanted, const std::vector<DeviceInfo> &devices); // Error naming what there is
+
+// The same device with so many of its compute units, which are the threads of a CPU device. Error where there are not
+// so many, and for other devices.
+DeviceInfo with_threads(DeviceInfo info, unsigned threads);
 
 // The width of a kernel on that device: `wanted`, or the device's own where that is 0, which doubles halve (4 at
 // least). Error where the device has no doubles and the math asks for them.

@@ -91,17 +91,6 @@ std::vector<cl::Platform> platforms_of(const std::string &library) {
     return platforms;
 }
 
-// The path of a loaded library. Empty if it is not loaded: the loader then ignored its environment.
-std::string path_of(const std::string &library) {
-    void *const handle = library.empty() ? nullptr : dlopen(library.c_str(), RTLD_LAZY | RTLD_NOLOAD);
-    if (!handle)
-        return {};
-    link_map *map = nullptr;
-    std::string path = dlinfo(handle, RTLD_DI_LINKMAP, &map) == 0 ? map->l_name : "";
-    dlclose(handle);
-    return path;
-}
-
 // Loaders pass over a library without platforms and do not say why.
 std::string why_no_platform(const std::string &library) {
     return dlopen(library.c_str(), RTLD_NOW) ? "offers no platform"
@@ -114,6 +103,16 @@ std::string problem_of(const cl::Error &error) {
 
 } // namespace
 
+std::string library_path(const std::string &library) {
+    void *const handle = library.empty() ? nullptr : dlopen(library.c_str(), RTLD_LAZY | RTLD_NOLOAD);
+    if (!handle)
+        return {};
+    link_map *map = nullptr;
+    std::string path = dlinfo(handle, RTLD_DI_LINKMAP, &map) == 0 ? map->l_name : "";
+    dlclose(handle);
+    return path;
+}
+
 void for_each_device(const std::string &library,
                      const std::function<void(const DeviceInfo &, const cl::Device &)> &use) {
     const std::vector<cl::Platform> platforms = platforms_of(library);
@@ -123,7 +122,7 @@ void for_each_device(const std::string &library,
         driver.problem = why_no_platform(library);
         use(driver, cl::Device());
     }
-    driver.library = path_of(library);
+    driver.library = library_path(library); // empty: the loader ignored its environment
     for (size_t p = 0; p < platforms.size(); ++p) {
         DeviceInfo base = driver;
         base.platform_place = static_cast<int>(p);

@@ -13,4 +13,7 @@ namespace opal {
 void for_each_device(const std::string &library,
                      const std::function<void(const DeviceInfo &, const cl::Device &)> &use);
 
+// The path of a loaded library. Empty if it is not loaded.
+std::string library_path(const std::string &library);
+
 } // namespace opal

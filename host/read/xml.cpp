@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 
 namespace opal {
@@ -123,6 +124,108 @@ XmlDocument::XmlDocument(const std::filesystem::path &file, std::string text)
     document_.traverse(walker);
     if (walker.found)
         XmlNode(*this, walker.found).fail(fmt::format("more than {} tags within each other", TooDeep::most_levels));
+}
+
+namespace {
+
+bool is_name_letter(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+
+bool begins_name(char c) { return is_name_letter(c) && !std::isdigit(static_cast<unsigned char>(c)); }
+
+// Takes the <default>s out of the <scene>s below `parent`, in document order, and returns their values.
+Definitions take_defaults(const XmlDocument &document, pugi::xml_node parent, const MistakeHandler &mistake) {
+    Definitions defaults;
+    for (pugi::xml_node child = parent.first_child(), next; child; child = next) {
+        next = child.next_sibling();
+        if (std::string_view(child.name()) != "default" || std::string_view(parent.name()) != "scene") {
+            defaults.merge(take_defaults(document, child, mistake));
+            continue;
+        }
+        const XmlNode node(document, child);
+        node.require_attributes({"name", "value"}, mistake);
+        const std::string name = node.attribute("name");
+        if (node.has_attribute("name") && !is_definable(name))
+            tell(mistake, node.place(), fmt::format("'{}' is no name: letters, digits and '_', no digit first", name));
+        if (!defaults.emplace(name, node.attribute("value")).second)
+            tell(mistake, node.place(), fmt::format("a second <default> of '{}'", name));
+        parent.remove_child(child);
+    }
+    return defaults;
+}
+
+// Replaces names in attributes, and keeps what was used.
+class Replacer : public pugi::xml_tree_walker {
+public:
+    Replacer(const XmlDocument &document, const Definitions &values, const MistakeHandler &mistake)
+        : document_(document), values_(values), mistake_(mistake) {}
+
+    bool for_each(pugi::xml_node &node) override {
+        for (pugi::xml_attribute attribute : node.attributes())
+            if (const std::string_view text = attribute.value(); text.find('$') != text.npos)
+                attribute.set_value(replaced(node, std::string(text)).c_str());
+        return true;
+    }
+    Definitions used;
+    bool lacks_some = false;
+
+private:
+    std::string replaced(pugi::xml_node node, const std::string &text) {
+        std::string result;
+        for (size_t i = 0; i < text.size();) {
+            if (text[i] != '$' || i + 1 == text.size() || !begins_name(text[i + 1])) {
+                result += text[i++];
+                continue;
+            }
+            const auto end = std::find_if_not(text.begin() + std::ptrdiff_t(i) + 1, text.end(), is_name_letter);
+            const std::string name(text.begin() + std::ptrdiff_t(i) + 1, end);
+            i += 1 + name.size();
+            if (const auto value = values_.find(name); value != values_.end()) {
+                result += value->second;
+                used.insert(*value);
+            } else {
+                lack(node, name);
+            }
+        }
+        return result;
+    }
+
+    void lack(pugi::xml_node node, const std::string &name) {
+        lacks_some = true;
+        std::vector<std::string> known;
+        for (const auto &[other, value] : values_)
+            known.push_back(other);
+        const std::string nearest = nearest_name(name, known);
+        tell(
+            mistake_, XmlNode(document_, node).place(),
+            fmt::format("${} has no value{}: -D {}=VALUE gives one, or <default name=\"{}\" value=\"...\"/> in <scene>",
+                        name, nearest.empty() ? "" : fmt::format("; did you mean '${}'?", nearest), name, name));
+    }
+
+    const XmlDocument &document_;
+    const Definitions &values_;
+    const MistakeHandler &mistake_;
+};
+
+} // namespace
+
+bool is_definable(std::string_view name) {
+    return !name.empty() && begins_name(name[0]) && std::all_of(name.begin(), name.end(), is_name_letter);
+}
+
+Definitions XmlDocument::define(const Definitions &given, const MistakeHandler &mistake) {
+    Definitions values = given;
+    values.merge(take_defaults(*this, document_, mistake)); // what is given stays
+    Replacer replacer(*this, values, mistake);
+    document_.traverse(replacer);
+    for (const auto &[name, value] : given)
+        if (!replacer.used.contains(name) && !replacer.lacks_some) {
+            std::vector<std::string> known;
+            for (const auto &[other, used] : replacer.used)
+                known.push_back(other);
+            throw UsageError(root().place().text() + ": " + unknown_name("name of -D", name, known) +
+                             fmt::format(": no attribute holds ${}", name));
+        }
+    return replacer.used;
 }
 
 XmlNode XmlDocument::root() const {

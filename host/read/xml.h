@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,6 +34,11 @@ private:
 using MistakeHandler = std::function<void(const SourcePlace &, const std::string &message)>;
 // Takes an attribute that is not among those wanted, and the sentence that says so. An empty one throws XmlError.
 using AttributeHandler = std::function<void(const std::string &name, const std::string &message)>;
+
+// The values of names that attributes give as $name.
+using Definitions = std::map<std::string, std::string>;
+// Letters, digits and '_', with no digit first.
+bool is_definable(std::string_view name);
 
 // The lines of a text, found once: a place is then found in logarithmic time, so that files of 1e5 objects load.
 class TextLines {
@@ -79,6 +85,12 @@ public:
     XmlDocument &operator=(const XmlDocument &) = delete;
 
     XmlNode root() const; // the one root element
+
+    // Puts the value of the name in the place of each $name in attributes, and returns the values that were used. A
+    // value is that of `given`, else that of a <default name="..." value="..."/> directly in a <scene>; these are taken
+    // out of the document. It is not looked at again, so that it may hold a '$'. A '$' before no name stays. A name
+    // without a value is a mistake; then, values of `given` that nothing names throw UsageError.
+    Definitions define(const Definitions &given, const MistakeHandler &mistake = {});
     SourcePlace place(ptrdiff_t offset) const { return lines_.place(offset); }
     const std::string &text() const { return text_; }
 

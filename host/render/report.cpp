@@ -68,6 +68,7 @@ nlohmann::json RenderReport::json() const {
     nlohmann::json j;
     j["scene"] = scene.file.string();
     j["dialect"] = name_of(scene.dialect);
+    j["definitions"] = scene.definitions;
     j["device"] = device.name;
     j["driver"] = device.driver;
     j["lanes"] = lanes;

@@ -64,9 +64,14 @@ void set_specialise(Strategy &strategy, const std::string &value) {
 }
 
 const std::vector<StrategyOption> numbers = {
-    {"max-depth", "maxDepth", "integer", "N|none",
-     "segments of the longest path: 1 shows lights, 2 adds direct light [the scene's, else none]", set_max_depth,
-     [](const Strategy &s) { return s.max_depth == no_limit ? "none" : std::to_string(s.max_depth); }},
+    {"max-depth",
+     "maxDepth",
+     "integer",
+     "N|none",
+     "segments of the longest path: 1 shows lights, 2 adds direct light [the scene's, else none]",
+     set_max_depth,
+     [](const Strategy &s) { return s.max_depth == no_limit ? "none" : std::to_string(s.max_depth); },
+     {"none"}},
     {"rr-depth", "rrDepth", "integer", "N", "Russian roulette from this many segments on [the scene's, else 3]",
      set_rr_depth, [](const Strategy &s) { return std::to_string(s.rr_depth); }},
     {"rr-prob", "rr_prob", "float", "P", "--rr fixed: probability to survive, above 0 to 1 [the scene's, else 0.95]",
@@ -74,13 +79,23 @@ const std::vector<StrategyOption> numbers = {
     {"math", "math", "string", "MODE",
      "precise: single precision; fast: the same with relaxed math; double: double precision, where the device has it "
      "[precise]",
-     set_math, [](const Strategy &s) { return name_of(s.math); }},
-    {"lanes", "lanes", "integer", "N|auto",
+     set_math, [](const Strategy &s) { return name_of(s.math); }, names_of(math_modes())},
+    {"lanes",
+     "lanes",
+     "integer",
+     "N|auto",
      "paths that a work-item carries: 1, 4, 8, 16, or auto: what the device's vectors hold, 1 on a GPU [auto]",
-     set_lanes, [](const Strategy &s) { return s.lanes ? std::to_string(s.lanes) : "auto"; }},
-    {"specialise", "specialise", "boolean", "on|off",
-     "compile what the scene needs, or one kernel that can do everything [on]", set_specialise,
-     [](const Strategy &s) { return std::string(s.specialise ? "on" : "off"); }},
+     set_lanes,
+     [](const Strategy &s) { return s.lanes ? std::to_string(s.lanes) : "auto"; },
+     {"auto", "1", "4", "8", "16"}},
+    {"specialise",
+     "specialise",
+     "boolean",
+     "on|off",
+     "compile what the scene needs, or one kernel that can do everything [on]",
+     set_specialise,
+     [](const Strategy &s) { return std::string(s.specialise ? "on" : "off"); },
+     {"on", "off"}},
 };
 
 StrategyOption option_of_axis(int axis) {
@@ -94,7 +109,8 @@ StrategyOption option_of_axis(int axis) {
             "NAME",
             help,
             [axis](Strategy &s, const std::string &value) { s[axis] = find_choice(axis, value); },
-            [axis](const Strategy &s) { return axes()[axis].choices[s[axis]].name; }};
+            [axis](const Strategy &s) { return axes()[axis].choices[s[axis]].name; },
+            names_of(row.choices)};
 }
 
 // Names of the dialects that imply choices, or differ from the integrator's own. An integrator that is not here has its

@@ -19,6 +19,7 @@ struct StrategyOption {
     std::string help;                                         // its meaning, unit and default
     std::function<void(Strategy &, const std::string &)> set; // throws Error where the text is no such value
     std::function<std::string(const Strategy &)> text;        // the value, as `set` takes it
+    std::vector<std::string> names{};                         // the values that are names
 };
 
 std::span<const StrategyOption> strategy_options(); // every axis but the integrator, then the numbers

@@ -13,6 +13,7 @@
 #include "shared/types.h"
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -100,6 +101,7 @@ struct SceneDescription {
     std::vector<Light> lights;                // beside the meshes that emit
     std::string integrator_type = "path_mis"; // as written, e.g. path_tracer_recursive; path_mis where there is none
     Dialect dialect = Dialect::upstream;
+    std::map<std::string, std::string> definitions; // the values that stand for $name in the file
     Strategy strategy;
     bool normals_signed = false;
     SimpleLight simple_light;

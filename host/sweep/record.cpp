@@ -18,9 +18,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StrategyRecord, name, label, device, lanes, i
                                    pilot_seconds_a_sample, points, shot)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReferenceRecord, made_by, spp, seconds, mean_luminance, stderr_luminance,
                                    variance_known, mean_square)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SweepRecord, version, scene, scene_hash, dialect, reference_file, clock, devices,
-                                   width, height, crop, command, integrator, replicates, spp, left_out_spp, budget,
-                                   reference, strategies)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SweepRecord, version, scene, scene_hash, dialect, definitions, reference_file, clock,
+                                   devices, width, height, crop, command, integrator, replicates, spp, left_out_spp,
+                                   budget, reference, strategies)
 
 StrategyRecord &SweepRecord::strategy(const std::string &name, const std::string &label) {
     for (StrategyRecord &s : strategies)
@@ -48,8 +48,8 @@ SweepRecord resume(const std::filesystem::path &folder, const SweepRecord &fresh
         return fresh;
     SweepRecord kept = load_record(folder);
     const nlohmann::json was = kept, is = parse_json(dump(fresh)); // as load_record would return it
-    for (const char *key : {"version", "scene_hash", "dialect", "integrator", "devices", "clock", "width", "height",
-                            "crop", "reference_file"})
+    for (const char *key : {"version", "scene_hash", "dialect", "definitions", "integrator", "devices", "clock",
+                            "width", "height", "crop", "reference_file"})
         if (was[key] != is[key])
             throw Error(fmt::format("{}: holds another sweep ({} was {}, is {}); give another folder with -o",
                                     file.string(), key, dump(was[key]), dump(is[key])));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,7 @@ struct ReferenceRecord {
 struct SweepRecord {
     // A run that continues a sweep must agree in these.
     std::string version, scene, scene_hash, dialect, reference_file, clock; // clock: kernel or cpu
+    std::map<std::string, std::string> definitions;                         // of the scene
     std::vector<DeviceRecord> devices;
     int width = 0, height = 0; // of the whole image
     std::string crop;          // the part that is rendered, in words; empty: all

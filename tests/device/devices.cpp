@@ -156,7 +156,7 @@ TEST_CASE("A driver with several names is listed once", "[devices]") {
     folder.write("vendors/a.icd", good.library + "\n");
     folder.write("vendors/b.icd", (folder / "libother.so").string() + "\n");
     const Outcome outcome = devices_with(
-        "OCL_ICD_FILENAMES=" + good.library + " OCL_ICD_VENDORS=" + (folder / "vendors").string(), "--json");
+        "OCL_ICD_FILENAMES=" + good.library + " OCL_ICD_VENDORS=" + (folder / "vendors").string(), "--json -");
     INFO(outcome.out << outcome.err);
     REQUIRE(outcome.exit_code == 0);
     CHECK(nlohmann::json::parse(outcome.out)["devices"].size() == own);
@@ -222,6 +222,6 @@ TEST_CASE("The device that is opened is the one that was listed", "[devices]") {
     CHECK(device().handles->device.getInfo<CL_DEVICE_NAME>().find(device().info.name) != std::string::npos);
     CHECK(device().handles->queue.getInfo<CL_QUEUE_PROPERTIES>() == CL_QUEUE_PROFILING_ENABLE);
     const std::string wanted = std::to_string(device().info.index);
-    CHECK_THAT(run_shell(std::string(OPAL_BINARY) + " devices --json --device " + wanted).out,
+    CHECK_THAT(run_shell(std::string(OPAL_BINARY) + " devices --json - --device " + wanted).out,
                Catch::Contains(device().info.driver));
 }

@@ -17,7 +17,7 @@ struct Answers {
 };
 
 Answers answers(const std::string &environment) {
-    const Outcome listed = run_shell(environment + OPAL_BINARY " devices --json");
+    const Outcome listed = run_shell(environment + OPAL_BINARY " devices --json -");
     INFO(environment << listed.out << listed.err);
     REQUIRE(listed.exit_code == 0);
     Answers all;

@@ -1,5 +1,6 @@
 // `opal selftest`: right on this device, and a wrong, crashing or hanging driver is reported as such.
 #include "selftest/selftest.h"
+#include "base/exit_code.h"
 #include "base/table.h"
 #include "support/device.h"
 #include "support/mutants.h"
@@ -70,10 +71,10 @@ TEST_CASE("What computes wrong is found", "[selftest][stat]") {
     }
 }
 
-TEST_CASE("The table marks what failed, and the exit code is 1", "[selftest]") {
+TEST_CASE("The table marks what failed, and the exit code says so", "[selftest]") {
     const Outcome outcome = selftest_of({"Sobol", "core/rng.cl", "0x53a22864u", "0x53a22865u"}, "basics");
     INFO(outcome.out << outcome.err);
-    CHECK(outcome.exit_code == 1);
+    CHECK(outcome.exit_code == opal::exit_check_failed);
     const size_t line = outcome.out.find("Sobol numbers, wrong");
     REQUIRE(line != std::string::npos);
     const std::string row = outcome.out.substr(line, outcome.out.find('\n', line) - line);
@@ -86,13 +87,13 @@ TEST_CASE("A crash, a hang and kernels that do not build are told", "[selftest]"
     const Outcome crash = selftest_of({"crash", "kernels/sample_columns.cl", output,
                                        "*(volatile global float *)(8 + get_global_id(0)) = (float)lanes[lane];"},
                                       "warps");
-    CHECK(crash.exit_code == 1);
+    CHECK(crash.exit_code == opal::exit_check_failed);
     CHECK_THAT(crash.out, Catch::Contains("warps at 1 precise: crashed (Segmentation fault)"));
     const Outcome broken = selftest_of({"broken", "kernels/sample_columns.cl", output, "nothing;"}, "warps");
-    CHECK(broken.exit_code == 1);
+    CHECK(broken.exit_code == opal::exit_check_failed);
     CHECK_THAT(broken.out, Catch::Contains("the kernels do not build"));
     const ScratchFolder folder;
     const Outcome late = selftest("--group warps --time-limit 0.05");
-    CHECK(late.exit_code == 1);
+    CHECK(late.exit_code == opal::exit_check_failed);
     CHECK_THAT(late.out, Catch::Contains("did not end within 0.05 s"));
 }

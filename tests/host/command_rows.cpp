@@ -1,10 +1,13 @@
 // Commands as data: what their rows say, and how the parser obeys rows.
 #include "commands/commands.h"
+#include "commands/help.h"
 #include "commands/parse.h"
+#include "commands/row_text.h"
 #include "support/error_of.h"
 
 #include <catch2/catch.hpp>
 
+#include <iterator>
 #include <set>
 #include <sstream>
 
@@ -135,12 +138,59 @@ TEST_CASE("Options set their targets", "[command_rows]") {
     CHECK(v.words == std::vector<std::string>{"one", "two"});
 }
 
+TEST_CASE("Flags are written as usual", "[command_rows]") {
+    Values v;
+    parse(commands_into(v), {"go", "-n9", "--word=red", "--side=5", "--", "--a.xml"});
+    CHECK((v.number == 9 && v.word == "red" && v.side == 5u && v.file == "--a.xml"));
+    Values w;
+    parse(commands_into(w), {"go", "--words", "one", "two", "--flag", "a.xml"});
+    CHECK((w.words == std::vector<std::string>{"one", "two"} && w.flag && w.file == "a.xml"));
+}
+
+TEST_CASE("Help gives ranges and defaults that the parser has, and two examples that it takes", "[command_rows]") {
+    Values values;
+    const std::string help = help_of(commands_into(values)[0], "go");
+    for (const char *part : {"Usage: opal go [OPTIONS] FILE", "-n, --number N", "a number (1 to 9) [7]", "[60]",
+                             "--word red|green", "a side [64]", "numbers [1,2]"})
+        CHECK_THAT(help, Catch::Contains(part));
+    for_each_command(all_commands(), "", [](const Command &command, const std::string &path) {
+        INFO(path);
+        CHECK(command.examples.size() == 2);
+        for (const std::string &example : command.examples) {
+            std::istringstream stream(example.substr(0, example.find(" > ")));
+            std::vector<std::string> words{std::istream_iterator<std::string>(stream), {}};
+            CHECK((words.size() > 1 && words[0] == "opal"));
+            if (words[1].ends_with(".xml"))
+                words.insert(words.begin() + 1, "render");
+            CHECK(opal::test::error_of([&] { parse(all_commands(), {words.begin() + 1, words.end()}); }) == "");
+        }
+        for (const OptionRow &row : command.options)
+            if (takes_value(row) && !is_positional(row)) {
+                INFO(row.flags);
+                CHECK(type_of(row) != "TEXT"); // says what is meant: FILE, NAME, ...
+            }
+    });
+}
+
+TEST_CASE("The options of the strategy are explained once", "[command_rows]") {
+    const std::vector<Command> commands = all_commands();
+    CHECK_THAT(strategies_help(commands), Catch::Contains("--emitter-choice") && Catch::Contains("balance: "));
+    for (const Command &command : commands)
+        CHECK_THAT(help_of(command, command.name), !Catch::Contains("balance: "));
+}
+
 TEST_CASE("Words that break a row are refused by the flag's name", "[command_rows]") {
     using Catch::Contains;
-    CHECK_THAT(refusal_of({"go", "a.xml", "--number", "10"}), Contains("--number: Value 10 not in range 1 to 9"));
+    CHECK_THAT(refusal_of({"go", "a.xml", "--number", "10"}),
+               Contains("--number: 10 is out of range; possible: 1 to 9"));
     CHECK_THAT(refusal_of({"go", "a.xml", "--budget", "3days"}), Contains("--budget"));
-    CHECK_THAT(refusal_of({"go", "a.xml", "--word", "blue"}), Contains("--word: blue not in {red,green}"));
-    CHECK_THAT(refusal_of({"go", "a.xml", "--flag", "--word", "red"}), Contains("--flag excludes --word"));
+    CHECK_THAT(refusal_of({"go", "a.xml", "--word", "blue"}),
+               Contains("--word: unknown value 'blue'; available: red, green"));
+    CHECK_THAT(refusal_of({"go", "a.xml", "--flag", "--word", "red"}),
+               Contains("--word and --flag exclude each other"));
     CHECK_THAT(refusal_of({"go", "a.xml", "--side", "-1"}), Contains("--side"));
-    CHECK_THAT(refusal_of({"go"}), Contains("FILE is required"));
+    CHECK_THAT(refusal_of({"go", "a.xml", "--side", "99999999999"}), Contains("out of range"));
+    CHECK_THAT(refusal_of({"go", "a.xml", "--list", "4,x"}), Contains("--list: 'x' is no whole number"));
+    CHECK_THAT(refusal_of({"go", "a.xml", "b.xml"}), Contains("'b.xml' is one argument too many"));
+    CHECK_THAT(refusal_of({"go"}), Contains("opal go needs FILE"));
 }

@@ -1,5 +1,7 @@
-// The command line: its output, and one clear message with exit code 1 for bad input.
+// The command line: its output, and one clear message for bad input, with exit code 2 where the command line is wrong
+// and 1 else.
 #include "base/command_line.h"
+#include "base/exit_code.h"
 #include "support/scratch.h"
 
 #include <catch2/catch.hpp>
@@ -26,10 +28,10 @@ const char *const scene_text = R"(<scene>
 </scene>
 )";
 
-void check_refused(const std::string &arguments, const std::string &reason) {
+void check_refused(const std::string &arguments, const std::string &reason, int code = opal::exit_usage) {
     const Outcome outcome = run_shell(opal_binary + " " + arguments);
     INFO(arguments << "\n" << outcome.out << outcome.err);
-    CHECK(outcome.exit_code == 1);
+    CHECK(outcome.exit_code == code);
     const size_t message = outcome.err.find("error: ");
     REQUIRE(message != std::string::npos);
     CHECK((message == 0 || outcome.err[message - 1] == '\n')); // after what was said before
@@ -41,7 +43,9 @@ void check_refused(const std::string &arguments, const std::string &reason) {
 
 TEST_CASE("Help and version are printed and succeed", "[commands]") {
     CHECK(run_shell(opal_binary + " --version").out == "opal " OPAL_VERSION "\n");
-    for (const char *arguments : {"--help", "devices --help", "inspect --help", "render --help"}) {
+    CHECK(run_shell(opal_binary + " -V").out == "opal " OPAL_VERSION "\n");
+    for (const char *arguments : {"--help", "devices --help", "inspect -h", "render scene.xml --help", "help",
+                                  "help render", "help bench rays"}) {
         const Outcome outcome = run_shell(opal_binary + " " + arguments);
         CHECK(outcome.exit_code == 0);
         CHECK_THAT(outcome.out, Catch::Contains("Usage: opal"));
@@ -49,12 +53,76 @@ TEST_CASE("Help and version are printed and succeed", "[commands]") {
     }
 }
 
-TEST_CASE("What is not understood is refused with what there is", "[commands]") {
-    check_refused("", "no command given; available: ");
-    check_refused("rendre", "unknown command 'rendre'; available: ");
-    check_refused("devices --jsno", "--jsno");
-    check_refused("inspect", "SCENE.xml");
-    check_refused("no-such.xml", "no-such.xml");
+TEST_CASE("What is not understood is refused with what there is, and with what was meant", "[commands]") {
+    const ScratchFolder folder;
+    const std::string scene = folder.write("scene.xml", scene_text);
+    check_refused("rendr", "unknown command 'rendr'; did you mean 'render'? available: ");
+    check_refused("bench ray " + scene, "did you mean 'rays'?");
+    check_refused("bench", "opal bench needs a command: rays, render");
+    check_refused("help rendr", "did you mean 'render'?");
+    check_refused("devices --jsno", "unknown flag '--jsno' of opal devices; did you mean '--json'?");
+    check_refused(scene + " --ssp 4", "did you mean '--spp'?");
+    check_refused(scene + " --samp 4", "unknown flag '--samp'");
+    check_refused(scene + " --spp abc", "--spp: 'abc' is no whole number; possible: 1 to 4294967295");
+    check_refused(scene + " --spp 16k", "--spp: '16k' is no whole number; did you mean 16000? possible: ");
+    check_refused(scene + " --spp 0", "--spp: 0 is out of range; possible: 1 to 4294967295");
+    check_refused(scene + " --spp", "--spp needs a value");
+    check_refused(scene + " --spp --no-png", "--spp needs a value");
+    check_refused(scene + " --spp 1 --spp 2", "--spp is given twice");
+    check_refused(scene + " --no-png=1", "--no-png takes no value");
+    check_refused(scene + " --time soon", "--time: 'soon' is no duration");
+    check_refused(scene + " --lighting nee", "--lighting: unknown lighting 'nee'; did you mean 'emitter'?");
+    check_refused(scene + " --integrator path_tracer",
+                  "--integrator: unknown integrator 'path_tracer'; did you mean 'path'?");
+    check_refused(scene + " --sampler indep", "did you mean 'independent'?");
+    check_refused(scene + " more", "2 scenes: their images need a folder");
+    check_refused("inspect", "opal inspect needs SCENE.xml");
+    check_refused("no-such.xml", "no-such.xml", opal::exit_failed);
+}
+
+TEST_CASE("opal alone shows where to begin, and is no success", "[commands]") {
+    const Outcome outcome = run_shell(opal_binary);
+    CHECK(outcome.exit_code == opal::exit_usage);
+    CHECK(outcome.out.empty());
+    CHECK_THAT(outcome.err, Catch::Contains("opal scenes/cbox_mis.xml") && Catch::Contains("opal --help"));
+}
+
+TEST_CASE("version says what the binary is made of", "[commands]") {
+    const Outcome outcome = run_shell("cd / && " + opal_binary + " version");
+    CHECK(outcome.exit_code == 0);
+    for (const char *part :
+         {"opal " OPAL_VERSION "\n", "commit  ", "compiler  ", "OpenEXR  ", "OpenCL loader  /", "OpenCL driver  "})
+        CHECK_THAT(outcome.out, Catch::Contains(part));
+}
+
+TEST_CASE("The manual page and the completions name every command and flag", "[commands]") {
+    const Outcome man = run_shell(opal_binary + " man"), bash = run_shell(opal_binary + " completion bash"),
+                  zsh = run_shell(opal_binary + " completion zsh");
+    CHECK((man.exit_code == 0 && bash.exit_code == 0 && zsh.exit_code == 0));
+    for (const char *name : {"render", "selftest", "completion"})
+        for (const Outcome *text : {&man, &bash, &zsh})
+            CHECK_THAT(text->out, Catch::Contains(name));
+    CHECK_THAT(man.out, Catch::Contains(".SH EXIT STATUS") && Catch::Contains("\\-\\-emitter\\-choice"));
+    const ScratchFolder folder;
+    const std::string file = folder.write("opal.bash", bash.out);
+    const auto completed = [&](const std::string &words) { // the last word is being typed
+        const Outcome outcome = run_shell("bash -c '. " + file + "; COMP_WORDS=(" + words +
+                                          "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _opal; echo \"${COMPREPLY[*]}\"'");
+        return outcome.out;
+    };
+    CHECK(completed("opal rend") == "render\n");
+    CHECK(completed("opal render --tar") == "--target-error\n");
+    CHECK(completed("opal bench ra") == "rays\n");
+    CHECK(completed("opal bench rays a.xml --kind bo") == "bounce\n");
+    CHECK(completed("opal a.xml --lighting em") == "emitter\n");
+}
+
+TEST_CASE("The manual page is right roff", "[commands]") {
+    const ScratchFolder folder;
+    const std::string page = folder.write("opal.1", run_shell(opal_binary + " man").out);
+    const Outcome outcome = run_shell("command -v groff >/dev/null || exit 0; groff -man -Tutf8 -ww " + page);
+    CHECK(outcome.exit_code == 0);
+    CHECK(outcome.err.empty());
 }
 
 TEST_CASE("inspect tells what a scene holds and why each feature is in or out", "[commands]") {
@@ -75,7 +143,7 @@ TEST_CASE("inspect tells what a scene holds and why each feature is in or out", 
     check_refused("inspect " + (folder / "scene.xml").string() + " --mis balanced",
                   "available: balance, power, one-sample");
     check_refused("inspect " + (folder / "scene.xml").string() + " --cl --cl-dir " + folder.path().string(),
-                  "holds no .cl file");
+                  "holds no .cl file", opal::exit_failed);
 }
 
 TEST_CASE("The command line is kept as a shell would take it", "[commands]") {

@@ -222,5 +222,5 @@ TEST_CASE_METHOD(DialectFixture, "opal says what it takes from names, and what m
                                                  "means nothing here\n"));
     CHECK_THAT(as_it_is.out, Catch::Contains("dialect     eth\n"));
     CHECK_THAT(test::run_shell(opal + " --dialect upstream").out, Catch::Contains("dialect     upstream\n"));
-    CHECK_THAT(test::run_shell(opal + " --dialect nori").err, Catch::Contains("upstream,course,eth,auto"));
+    CHECK_THAT(test::run_shell(opal + " --dialect nori").err, Catch::Contains("upstream, course, eth, auto"));
 }

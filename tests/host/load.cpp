@@ -459,6 +459,43 @@ TEST_CASE("the course's scenes load unchanged", "[load]") {
     CHECK(count == 18);
 }
 
+TEST_CASE_METHOD(LoadFixture, "names in attributes take the values of -D, else of <default>", "[load]") {
+    const std::string body = "<default name='w' value='40'/><default name='type' value='perspective'/>"
+                             "<camera type='$type'><integer name='width' value='$w'/>"
+                             "<integer name='height' value='1$h'/></camera>" +
+                             light;
+    const SceneDescription scene = load(body, {.definitions = {{"h", "2"}, {"w", "80"}}});
+    CHECK((scene.camera.width == 80 && scene.camera.height == 12));
+    CHECK(scene.definitions == std::map<std::string, std::string>{{"h", "2"}, {"type", "perspective"}, {"w", "80"}});
+    CHECK(load(camera + light).definitions.empty());
+    // values are not looked at again, and a '$' before no name stays
+    const std::string named =
+        "<camera type='perspective'/><mesh type='parallelogram'><string name='name' value='$a $5 $'/>"
+        "<point name='origin' value='0 0 0'/><vector name='u' value='1 0 0'/>"
+        "<vector name='v' value='0 2 0'/></mesh>";
+    CHECK(load(named, {.definitions = {{"a", "$b"}}}).meshes[0].name == "$b $5 $");
+}
+
+TEST_CASE_METHOD(LoadFixture, "names without a value and values without a name are mistakes", "[load]") {
+    const auto error_with = [&](const std::string &body, const std::map<std::string, std::string> &definitions) {
+        return shortened(error_of([&] { load(body, {.definitions = definitions}); }));
+    };
+    const std::string sized = "<camera type='perspective'>\n  <integer name='width' value='$width'/></camera>" + light;
+    CHECK_THAT(error_with(sized, {}),
+               Catch::StartsWith(":3:3: $width has no value: -D width=VALUE gives one, or <def"));
+    CHECK_THAT(error_with(sized, {{"widt", "4"}}), Catch::Contains("did you mean '$widt'?"));
+    CHECK_THAT(error_with(sized, {{"width", "4"}, {"widthh", "4"}}),
+               Catch::StartsWith(":1:1: unknown name of -D 'widthh'; did you mean 'width'?"));
+    CHECK_THAT(error_with(sized, {{"width", "x"}}), Catch::Contains("'x' is not an integer"));
+    CHECK_THAT(error_with(camera + light, {{"w", "4"}}), Catch::Contains("no attribute holds $w"));
+    CHECK_THAT(error_with("<default name='a' value='1'/>\n<default name='a' value='2'/>" + camera + light, {}),
+               Catch::StartsWith(":3:1: a second <default> of 'a'"));
+    CHECK_THAT(error_with("<default name='a-b' value='1'/>" + camera + light, {}), Catch::Contains("'a-b' is no name"));
+    CHECK_THAT(error_with("<default name='a'/>" + camera + light, {}), Catch::Contains("lacks the attribute 'value'"));
+    CHECK_THAT(error_with("<camera type='perspective'><default name='a' value='1'/></camera>" + light, {}),
+               Catch::Contains("default"));
+}
+
 TEST_CASE("one of the course's scenes, in detail", "[load]") {
     std::filesystem::path file = shared() / "scenes/importance_diffuse/cbox_pt_nee.xml";
     if (!std::filesystem::exists(file)) {

@@ -143,7 +143,8 @@ TEST_CASE("bad overrides say what was possible", "[strategy]") {
     CHECK_THAT(
         override_error("lightning", "mis"),
         Catch::StartsWith("unknown strategy option 'lightning'; did you mean 'lighting'? available: integrator, "));
-    CHECK(override_error("lighting", "nee") == "unknown lighting 'nee'; available: bsdf, emitter, mis");
+    CHECK(override_error("lighting", "nee") ==
+          "unknown lighting 'nee'; did you mean 'emitter'? available: bsdf, emitter, mis");
     CHECK(override_error("max-depth", "0") == "max-depth ('none' for no limit) must be at least 1, not 0");
     CHECK(override_error("max-depth", "deep") == "'deep' is not an integer");
     CHECK(override_error("rr-depth", "-3") == "rr-depth must be at least 1, not -3");

@@ -1,4 +1,5 @@
 // `opal bench`: it prints all figures, and its dumped hits are those of its dumped rays and triangles.
+#include "base/exit_code.h"
 #include "bench/report.h"
 #include "support/scratch.h"
 
@@ -200,20 +201,21 @@ TEST_CASE("Degenerate triangles are in no dump; without a light shadow rays go a
 TEST_CASE("What makes no sense is refused, and nothing is written", "[bench]") {
     const ScratchFolder folder;
     const std::string scene = scenes + "cbox_mis.xml", out = (folder / "out").string();
-    for (const auto &[arguments, reason] :
-         {std::pair<std::string, std::string>{
+    for (const auto &[arguments, reason, code] :
+         {std::tuple<std::string, std::string, int>{
               "rays " + scene + " --dump-rays " + out,
-              "--dump-rays is of one kind of rays: name it with --kind; available: camera, bounce, shadow"},
-          {"rays " + scene + " --dump-hits " + out, "--dump-hits"},
-          {"rays " + scene + " --dump-triangles " + out, "--dump-triangles"},
-          {"rays " + scene + " --kind camra --dump-rays " + out, "available: camera, bounce, shadow"},
-          {"rays " + scene + " --kind camera --json " + out + "/no/where", "no/where"},
-          {"rays " + scene + " --rays 0", "--rays"},
-          {"rays " + out + ".xml", "out.xml"},
-          {"ray " + scene, "subcommand is required"}}) {
+              "--dump-rays is of one kind of rays: name it with --kind; available: camera, bounce, shadow",
+              opal::exit_usage},
+          {"rays " + scene + " --dump-hits " + out, "--dump-hits", opal::exit_usage},
+          {"rays " + scene + " --dump-triangles " + out, "--dump-triangles", opal::exit_usage},
+          {"rays " + scene + " --kind camra --dump-rays " + out, "available: camera, bounce, shadow", opal::exit_usage},
+          {"rays " + scene + " --kind camera --json " + out + "/no/where", "no/where", opal::exit_failed},
+          {"rays " + scene + " --rays 0", "--rays", opal::exit_usage},
+          {"rays " + out + ".xml", "out.xml", opal::exit_failed},
+          {"ray " + scene, "did you mean 'rays'?", opal::exit_usage}}) {
         const Outcome outcome = bench(arguments);
         INFO(arguments << "\n" << outcome.err);
-        CHECK(outcome.exit_code == 1);
+        CHECK(outcome.exit_code == code);
         CHECK_THAT(outcome.err, Catch::Contains("error: ") && Catch::Contains(reason));
         CHECK(std::filesystem::is_empty(folder.path()));
     }

@@ -1,4 +1,5 @@
 // `opal test`: scenes and BSDFs whose means are known in closed form or by quadrature, and kernels that are wrong.
+#include "base/exit_code.h"
 #include "support/mutants.h"
 
 #include <catch2/catch.hpp>
@@ -35,7 +36,7 @@ TEST_CASE("A wrong reference is rejected, and the JSON says so", "[conformance]"
         folder.write("wrong.xml", "<test type='ttest'><string name='angles' value='0 30'/>"
                                   "<string name='references' value='0.5 0.51'/><bsdf type='diffuse'/></test>");
     const Outcome outcome = run_tests(test + " --json " + (folder / "out.json").string());
-    CHECK(outcome.exit_code == 1);
+    CHECK(outcome.exit_code == opal::exit_check_failed);
     const auto json = nlohmann::json::parse(read_text(folder / "out.json"));
     const auto &results = json.at("tests").at(0).at("cases");
     CHECK(results.at(0).at("passed") == true);
@@ -53,7 +54,7 @@ TEST_CASE("Wrong kernels are rejected", "[conformance][stat]") {
     struct WrongKernel {
         const char *file, *from, *to, *test;
         unsigned samples;
-        int exit_code = 1;
+        int exit_code = opal::exit_check_failed;
     };
     const WrongKernel kernels[] = {
         {"bsdfs/diffuse.cl", "2 * wo.z", "(wo.z < 2 ? 2 * wo.z : (real)(NAN))", "triangle_light.xml", 100000,

@@ -1,4 +1,5 @@
 // `opal render` as its users meet it: files, statistics, refusals, Ctrl-C.
+#include "base/exit_code.h"
 #include "image/image.h"
 #include "support/mutants.h"
 
@@ -39,10 +40,10 @@ struct SceneFolder {
     }
 };
 
-void check_refused(const SceneFolder &folder, const std::string &arguments, const std::string &reason) {
+void check_refused(const SceneFolder &folder, const std::string &arguments, const std::string &reason, int code) {
     const Outcome outcome = run_shell(folder.render(arguments));
     INFO(arguments << "\n" << outcome.err);
-    CHECK(outcome.exit_code == 1);
+    CHECK(outcome.exit_code == code);
     CHECK_THAT(outcome.err, Catch::Contains("error: ") && Catch::Contains(reason));
     CHECK(folder.files() == 1); // the scene
 }
@@ -105,29 +106,58 @@ TEST_CASE("Size, samples and output are the command line's where given", "[rende
     CHECK(folder.files() == 2);
 }
 
+TEST_CASE("The values of -D stand in the image and in the JSON", "[render_command]") {
+    const SceneFolder folder;
+    std::string text = read_text(folder.scratch / "plain.xml");
+    REQUIRE(text.find("value=\"24\"") != std::string::npos);
+    text.replace(text.find("value=\"24\""), 10, "value=\"$w\"");
+    folder.scratch.write("plain.xml", text);
+    REQUIRE(run_shell(folder.render("-Dw=16 -o out.exr --json out.json --no-png --spp 1")).exit_code == 0);
+    const Image image = read_exr(folder.scratch / "out.exr");
+    CHECK((image.width == 16 && image.text("opal.definitions") == "{\"w\":\"16\"}"));
+    CHECK(nlohmann::json::parse(read_text(folder.scratch / "out.json"))["definitions"]["w"] == "16");
+    CHECK(run_shell(folder.render("-D w=16 -D v=1")).exit_code == exit_usage);
+    CHECK(run_shell(folder.render("-D w")).exit_code == exit_usage);
+    CHECK(run_shell(folder.render("")).exit_code == exit_failed);
+}
+
+TEST_CASE("--threads bounds the threads of a CPU device, and changes no bit", "[render_command]") {
+    const SceneFolder folder;
+    const Outcome one = run_shell(folder.render("--threads 1 -o one.exr --no-png"));
+    INFO(one.err);
+    REQUIRE(one.exit_code == 0);
+    CHECK_THAT(one.err, Catch::Contains("1 thread"));
+    REQUIRE(run_shell(folder.render("-o all.exr --no-png")).exit_code == 0);
+    CHECK(read_exr(folder.scratch / "one.exr").get("G").values == read_exr(folder.scratch / "all.exr").get("G").values);
+    const Outcome many = run_shell(folder.render("--threads 60000"));
+    CHECK(many.exit_code == exit_usage);
+    CHECK_THAT(many.err, Catch::Contains("--threads: 60000 is out of range; "));
+}
+
 TEST_CASE("What cannot be rendered or written is refused, and nothing is left behind", "[render_command]") {
     const SceneFolder folder;
-    check_refused(folder, "--spp 0", "--spp");
-    check_refused(folder, "--width 0", "--width");
-    check_refused(folder, "--device 99", "no OpenCL device \"99\"; available: 0 (");
-    check_refused(folder, "-o none/out.exr", "there is no folder none");
-    check_refused(folder, "-o out.jpg", "-o out.jpg: the ending '.jpg' names no format of Opal's; possible: FILE.exr");
-    check_refused(folder, "-o out", "-o out: the ending is missing; possible: FILE.exr");
-    check_refused(folder, "--crop 18,0,7,4", "--crop 18,0,7,4: is no part of the image of 24 x 12 pixels");
-    check_refused(folder, "--crop 0,0,0,4", "is no part of the image");
-    check_refused(folder, "--crop -1,0,4,4", "is no part of the image");
-    check_refused(folder, "--crop 1,2,3", "--crop 1,2,3: wants X,Y,W,H");
-    check_refused(folder, "--crop 1,2,3,x", "--crop 1,2,3,x: ");
-    check_refused(folder, "-o - --json -", "-o - and --json -: stdout takes one of them");
-    check_refused(folder, "-o out.png --no-png", "nothing would be written");
-    check_refused(folder, "-o out.png --layers variance", "a PNG holds no layers");
-    check_refused(folder, "--no-png --exposure 1", "they shape the PNG, and none is written");
-    check_refused(folder, folder.scene, "2 scenes: their images need a folder, -o FOLDER/");
-    check_refused(folder, folder.scene + " -o out/", "both images would be out/plain.exr");
-    check_refused(folder, "--no-png -o /dev/full", "No space left on device");
-    check_refused(folder, "--width 65535 --height 65535", "no room for the film and its samples: ");
-    check_refused(folder, "--lanes 3", "unknown lanes '3'; available: auto, 1, 4, 8, 16");
-    check_refused(folder, "--lighting bsdf --mis one-sample", "makes no sense");
+    check_refused(folder, "--spp 0", "--spp", exit_usage);
+    check_refused(folder, "--width 0", "--width", exit_usage);
+    check_refused(folder, "--device 99", "no OpenCL device \"99\"; available: 0 (", exit_failed);
+    check_refused(folder, "-o none/out.exr", "there is no folder none", exit_failed);
+    check_refused(folder, "-o out.jpg", "-o out.jpg: the ending '.jpg' names no format of Opal's; possible: FILE.exr",
+                  exit_usage);
+    check_refused(folder, "-o out", "-o out: the ending is missing; possible: FILE.exr", exit_usage);
+    check_refused(folder, "--crop 18,0,7,4", "--crop 18,0,7,4: is no part of the image of 24 x 12 pixels", exit_failed);
+    check_refused(folder, "--crop 0,0,0,4", "is no part of the image", exit_failed);
+    check_refused(folder, "--crop -1,0,4,4", "is no part of the image", exit_failed);
+    check_refused(folder, "--crop 1,2,3", "--crop 1,2,3: wants X,Y,W,H", exit_usage);
+    check_refused(folder, "--crop 1,2,3,x", "--crop 1,2,3,x: ", exit_usage);
+    check_refused(folder, "-o - --json -", "-o - and --json -: stdout takes one of them", exit_usage);
+    check_refused(folder, "-o out.png --no-png", "nothing would be written", exit_usage);
+    check_refused(folder, "-o out.png --layers variance", "a PNG holds no layers", exit_usage);
+    check_refused(folder, "--no-png --exposure 1", "they shape the PNG, and none is written", exit_usage);
+    check_refused(folder, folder.scene, "2 scenes: their images need a folder, -o FOLDER/", exit_usage);
+    check_refused(folder, folder.scene + " -o out/", "both images would be out/plain.exr", exit_usage);
+    check_refused(folder, "--no-png -o /dev/full", "No space left on device", exit_failed);
+    check_refused(folder, "--width 65535 --height 65535", "no room for the film and its samples: ", exit_failed);
+    check_refused(folder, "--lanes 3", "unknown lanes '3'; available: auto, 1, 4, 8, 16", exit_usage);
+    check_refused(folder, "--lighting bsdf --mis one-sample", "makes no sense", exit_failed);
 }
 
 TEST_CASE("The ending of -o says what is written", "[render_command]") {

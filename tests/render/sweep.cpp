@@ -1,4 +1,5 @@
 // `opal sweep` as its users meet it, on a scene of a few pixels: slopes, the page, resuming, refusals.
+#include "base/exit_code.h"
 #include "image/image.h"
 #include "support/device.h"
 #include "support/scratch.h"
@@ -132,15 +133,15 @@ TEST_CASE("Names of any bytes are swept, and gone on with", "[sweep]") {
 
 TEST_CASE("What makes no sense is refused before anything is rendered", "[sweep]") {
     const SceneFolder folder;
-    const auto refused = [&](const std::string &arguments, const std::string &reason) {
+    const auto refused = [&](const std::string &arguments, const std::string &reason, int code = exit_usage) {
         const Outcome outcome = folder.sweep(arguments + " -o out");
         INFO(arguments << "\n" << outcome.err);
-        CHECK(outcome.exit_code == 1);
+        CHECK(outcome.exit_code == code);
         CHECK_THAT(outcome.err, Catch::Contains(reason));
         CHECK_FALSE(std::filesystem::exists(folder.scratch / "out"));
     };
-    refused("--replicates 1", "an interval needs at least 2");
-    refused("--spp 0", "--spp 0: possible are 1 to ");
+    refused("--replicates 1", "possible: 2 to ");
+    refused("--spp 0", "--spp: 0 is out of range; possible: 1 to ");
     refused("--strategies lighting=bdsf", "unknown lighting 'bdsf'; available: bsdf, emitter, mis");
     refused("--strategies coarse",
             "neither a preset (course, all) nor a list axis=value,...; axes: integrator, lighting, mis,");
@@ -153,10 +154,10 @@ TEST_CASE("What makes no sense is refused before anything is rendered", "[sweep]
     refused("--integrator normals", "integrator normals has none: name strategies");
     refused("--math precise,quick", "unknown math 'quick'; available: precise, fast, double");
     refused("--math fast,fast", "is the same as");
-    refused("--device 0,99", "no OpenCL device \"99\"; available: 0 (");
-    refused("--device 0,0", "'0' and '0' are the same device");
+    refused("--device 0,99", "no OpenCL device \"99\"; available: 0 (", exit_failed);
+    refused("--device 0,0", "'0' and '0' are the same device", exit_failed);
     refused("--budget soon", "is no duration");
-    refused("--reference none.exr", "none.exr");
+    refused("--reference none.exr", "none.exr", exit_failed);
 }
 
 TEST_CASE("A reference of another size, scene or without colours is refused before anything is rendered", "[sweep]") {

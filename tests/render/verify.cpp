@@ -1,4 +1,5 @@
 // `opal verify` as its users meet it: it accepts right kernels, and finds biases that were planted in wrong ones.
+#include "base/exit_code.h"
 #include "read/nori/load.h"
 #include "scene/options.h"
 #include "strategies/combinations.h"
@@ -91,7 +92,7 @@ TEST_CASE("A bias of 2 % in one strategy is found, and the strategy is named", "
                       "lighting=emitter'" +
                       folder.wrong_kernels(mutant));
     INFO(outcome.out << outcome.err);
-    CHECK(outcome.exit_code == 1);
+    CHECK(outcome.exit_code == exit_check_failed);
     CHECK_THAT(outcome.out, Catch::Contains("DISAGREE: 2 of 3 pairs") &&
                                 Catch::Contains("lighting=bsdf,hemisphere=uniform stands alone: 2 of its 2 pairs"));
     CHECK(folder.report()["agree"] == false);
@@ -106,7 +107,7 @@ TEST_CASE("A bias of 2 % of light sampling is found by the strategies chosen by 
                         "light.radiance), R(1.02) * fabs(wo.z) * inverse_pdf"};
     const Outcome outcome = folder.verify("--budget 30s" + folder.wrong_kernels(mutant));
     INFO(outcome.out << outcome.err);
-    CHECK(outcome.exit_code == 1);
+    CHECK(outcome.exit_code == exit_check_failed);
     CHECK_THAT(folder.report()["suspect"].get<std::string>(), Catch::Contains("lighting="));
 }
 
@@ -115,7 +116,7 @@ TEST_CASE("Strategies that do not exist or make no sense are refused before rend
     const auto refused = [&](const std::string &strategies, const std::string &reason) {
         const Outcome outcome = folder.verify("--strategies '" + strategies + "'");
         INFO(strategies << "\n" << outcome.err);
-        CHECK(outcome.exit_code == 1);
+        CHECK(outcome.exit_code == exit_usage);
         CHECK_THAT(outcome.err, Catch::Contains(reason));
         CHECK_FALSE(std::filesystem::exists(folder.scratch / "out.json"));
     };

@@ -109,7 +109,10 @@ SceneDescription load_scene(const std::filesystem::path &file, const LoadOptions
         root.fail(unknown_name("root", root.tag(), {"scene", "test"}));
     Mistakes mistakes;
     const ParseContext context = context_for(file, options, mistakes);
+    const Definitions definitions = document.define(options.definitions, context.handler());
+    mistakes.throw_all(); // what lacks its value would be told twice
     SceneDescription scene = parse_scene(root, context);
+    scene.definitions = definitions;
     mistakes.throw_all();
     tell_dialect(scene, choose_dialect(root, context), root.place());
     return scene;

@@ -3,11 +3,15 @@
 
 #include "scene/scene.h"
 
+#include <map>
+#include <string>
+
 namespace opal {
 
 struct LoadOptions {
-    bool lenient = false;         // what is unknown warns instead of failing
-    std::string dialect = "auto"; // the name of a Dialect; auto: by the names in the scene
+    bool lenient = false;                             // what is unknown warns instead of failing
+    std::string dialect = "auto";                     // the name of a Dialect; auto: by the names in the scene
+    std::map<std::string, std::string> definitions{}; // values of $name in attributes (XmlDocument::define)
 };
 
 // Reads a scene. Relative file names are looked for beside the XML file, then in the current folder. Throws Error

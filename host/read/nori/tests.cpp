@@ -88,7 +88,10 @@ TestDescription load_test(const std::filesystem::path &file, const LoadOptions &
     if (root.tag() != "test")
         root.fail(unknown_name("root", root.tag(), {"scene", "test"}));
     Mistakes mistakes;
-    const TestDescription test = parse_test(root, context_for(file, options, mistakes));
+    const ParseContext context = context_for(file, options, mistakes);
+    document.define(options.definitions, context.handler());
+    mistakes.throw_all();
+    const TestDescription test = parse_test(root, context);
     mistakes.throw_all();
     return test;
 }

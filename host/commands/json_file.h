@@ -1,0 +1,21 @@
+// The JSON that a command leaves with --json: one envelope, then the command's own keys (schemas/).
+#pragma once
+
+#include "commands/command.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace opal {
+
+// --json FILE|-. what: "the statistics of the render".
+OptionRow json_row(std::string &file, const std::string &what);
+
+// Call before the work: a file that cannot be written is an error now, and for "-" stdout is kept for the JSON alone.
+// Empty: nothing is asked for.
+void prepare_json(const std::string &file);
+
+// Writes the envelope and the report's keys: `opal` (version), `command` (its name), `command_line`, `seconds` (with
+// `wall`, since the process began, beside the report's own), `warnings`.
+void write_json(const std::string &file, const std::string &command, nlohmann::json report);
+
+} // namespace opal

@@ -1,0 +1,64 @@
+// opal version: what this binary was built of, and the OpenCL drivers that are installed.
+#include "base/exit_code.h"
+#include "base/json.h"
+#include "base/log.h"
+#include "commands/commands.h"
+#include "device/ask_driver.h"
+#include "image/image.h"
+
+#include <OpenEXR/OpenEXRConfig.h>
+#include <fmt/format.h>
+#include <png.h>
+#include <pugixml.hpp>
+
+namespace opal {
+
+namespace {
+
+struct Part {
+    std::string name, version;
+};
+
+std::string compiler() {
+#ifdef __clang__
+    return __VERSION__; // "Clang 14.0.6"
+#else
+    return "GCC " __VERSION__;
+#endif
+}
+
+std::vector<Part> libraries() {
+    return {{"OpenEXR", OPENEXR_VERSION_STRING},
+            {"libpng", png_get_libpng_ver(nullptr)},
+            {"pugixml", fmt::format("{}.{}", PUGIXML_VERSION / 1000, PUGIXML_VERSION % 1000 / 10)},
+            {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
+            {"nlohmann_json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
+                                          NLOHMANN_JSON_VERSION_PATCH)}};
+}
+
+int run() {
+    print("opal {}\n", OPAL_VERSION);
+    const auto row = [](const std::string &name, const std::string &value) { print("{:<15}{}\n", name, value); };
+    row("commit", OPAL_COMMIT);
+    row("compiler", compiler());
+    for (const Part &part : libraries())
+        row(part.name, part.version);
+    row("OpenCL loader", loader_path());
+    for (const Driver &driver : find_drivers()) // none is opened: `opal devices` asks them
+        row("OpenCL driver", driver.name.empty()             ? "none is installed"
+                             : driver.library.empty()        ? driver.name + " (names no library)"
+                             : driver.library == driver.name ? driver.name
+                                                             : driver.name + ", " + driver.library);
+    return exit_done;
+}
+
+} // namespace
+
+Command version_command() {
+    return {.name = "version",
+            .help = "Print version, commit, compiler, libraries, and the OpenCL drivers that are installed",
+            .examples = {"opal version", "opal devices"},
+            .run = [] { return run(); }};
+}
+
+} // namespace opal
