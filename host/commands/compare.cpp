@@ -235,7 +235,7 @@ Command compare_command() {
     auto o = std::make_shared<Options>();
     return {
         .name = "compare",
-        .help = "Hold an image against another: errors, and whether both can have one mean",
+        .help = "Compare two images: errors, and a test whether their means agree",
         .options = {{.flags = "A.exr", .target = &o->image, .help = "The image", .type = "", .required = true},
                     {.flags = "B.exr", .target = &o->reference, .help = "The reference", .type = "", .required = true},
                     {.flags = "-o,--output",
@@ -246,7 +246,7 @@ Command compare_command() {
                     json_row(o->json, "the figures"),
                     {.flags = "--significance",
                      .target = &o->significance,
-                     .help = "Level of the test that both have one mean",
+                     .help = "Level of the test whether their means agree",
                      .check = Range{1e-12, 0.5}},
                     {.flags = "--quiet", .target = &o->quiet, .help = "Print nothing but warnings and errors"}},
         .examples = {"opal compare a.exr b.exr", "opal compare a.exr b.exr -o difference.exr --json figures.json"},

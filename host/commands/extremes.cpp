@@ -90,7 +90,7 @@ Command extremes_command() {
     auto o = std::make_shared<ExtremesOptions>();
     return {
         .name = "extremes",
-        .help = "Stretch scenes over many decades and hold single against double precision",
+        .help = "Compare single with double precision on scenes of extreme sizes and values",
         .options = {{.flags = "--row",
                      .target = &o->names,
                      .help = "What to stretch (--list); all of them where none is named",

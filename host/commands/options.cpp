@@ -65,8 +65,10 @@ std::vector<OptionRow> strategy_rows(SceneOptions &options) {
                         "tag, or a type, for which the warning says what stands in"});
     rows.push_back({.flags = "--dialect",
                     .target = &options.load.dialect,
-                    .help = "Whose scene it is: upstream (Nori), course (2022: box filter), eth (ETH's course, Nori of "
-                            "2012: the camera's +x points to the right of the image), or auto: by its names",
+                    .help =
+                        "The version of Nori that the scene is for: upstream (Nori), course (2022: box filter), eth "
+                        "(ETH's course, Nori of 2012: the camera's +x points to the right of the image), or auto: "
+                        "by its names",
                     .check = OneOf<std::string>{dialect_choices()},
                     .type = "NAME"});
     rows.push_back({.flags = "-D,--define",

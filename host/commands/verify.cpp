@@ -189,7 +189,7 @@ Command verify_command() {
     auto o = std::make_shared<Options>();
     return {
         .name = "verify",
-        .help = "Hold all unbiased strategies against each other on a scene",
+        .help = "Test whether all unbiased strategies give the same mean image of a scene",
         .options = append(
             scene_rows(o->scene),
             {device_row(o->device),

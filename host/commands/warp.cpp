@@ -120,7 +120,7 @@ Command warp_command() {
                         .group = "Parameters"});
     return {
         .name = "warp",
-        .help = "Draw samples of a warp, a BSDF or a light and hold them against their density",
+        .help = "Draw samples of a warp, a BSDF or a light, and test whether they have its density",
         .options = append(
             rows,
             {{.flags = "--samples", .target = &o->samples, .help = "How many to draw", .check = Range{1000.0, 1e9}},
