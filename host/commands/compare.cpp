@@ -1,5 +1,6 @@
 // opal compare: errors of an image against a reference, and a test of their means.
 #include "base/error.h"
+#include "base/exit_code.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "commands/commands.h"
@@ -21,6 +22,7 @@ namespace {
 struct Options {
     std::string image, reference, out, json;
     double significance = 1e-3;
+    double limit = -1; // of relMSE; below 0: none
     bool quiet = false;
 };
 
@@ -201,6 +203,10 @@ int run(const Options &o) {
     metrics.max_y += place.y;
     nlohmann::json report = json_of(metrics);
     report.update(object({{"image", o.image}, {"reference", o.reference}}));
+    const bool limited = o.limit >= 0, black = metrics.rel_mse_floor == 0; // black: relMSE leaves those pixels out
+    const bool within_limit = metrics.rel_mse <= o.limit && (!black || metrics.mse == 0) && invalid.empty();
+    if (limited)
+        report.update(object({{"limit", o.limit}, {"within_limit", within_limit}}));
     if (!o.quiet)
         print_text(text_of(metrics));
     std::string untested = why_untested(o.image, image);
@@ -226,7 +232,11 @@ int run(const Options &o) {
     write_json(o.json, "compare", report);
     if (!invalid.empty())
         throw ErrorList(invalid);
-    return 0;
+    if (!limited)
+        return exit_done;
+    print("relMSE {:.6g} is {} the limit of {:g}{}\n", metrics.rel_mse, within_limit ? "within" : "not within", o.limit,
+          black && !within_limit ? ": the reference is black, and the image is not" : "");
+    return within_limit ? exit_done : exit_check_failed;
 }
 
 } // namespace
@@ -248,8 +258,16 @@ Command compare_command() {
                      .target = &o->significance,
                      .help = "Level of the test whether their means agree",
                      .check = Range{1e-12, 0.5}},
-                    {.flags = "--quiet", .target = &o->quiet, .help = "Print nothing but warnings and errors"}},
-        .examples = {"opal compare a.exr b.exr", "opal compare a.exr b.exr -o difference.exr --json figures.json"},
+                    {.flags = "--fail",
+                     .target = &o->limit,
+                     .help = "Exit with 3 if relMSE is above this; 0: if any pixel differs",
+                     .check = Range{0.0, 1e6},
+                     .type = "LIMIT"},
+                    {.flags = "--quiet",
+                     .target = &o->quiet,
+                     .help = "Print nothing but the verdict of --fail, warnings and errors"}},
+        .examples = {"opal compare a.exr b.exr --fail 1e-3",
+                     "opal compare a.exr b.exr -o difference.exr --json figures.json"},
         .run = [o] { return run(*o); }};
 }
 

@@ -1,6 +1,7 @@
 // opal sweep: error against time of several strategies on one scene.
 #include "base/command_line.h"
 #include "base/error.h"
+#include "base/exit_code.h"
 #include "base/hash.h"
 #include "base/json.h"
 #include "base/log.h"
@@ -9,7 +10,9 @@
 #include "base/table.h"
 #include "base/units.h"
 #include "commands/commands.h"
+#include "commands/json_file.h"
 #include "commands/options.h"
+#include "commands/vary.h"
 #include "image/metrics.h"
 #include "plot/svg.h"
 #include "render/report.h"
@@ -36,7 +39,7 @@ struct Options {
     std::vector<unsigned> spp = {4, 16, 64};
     unsigned replicates = 5, seed = 0, reference_spp = 0, width = 0, threads = 0;
     std::vector<std::string> devices;
-    std::string reference, crop, budget, out, clock = "kernel";
+    std::string reference, crop, budget, out, vary, json, clock = "kernel";
     bool quiet = false;
 };
 
@@ -187,14 +190,13 @@ int run_part_apart(Part part, const SweepPlan &plan, const DevicePick &pick, con
     return WEXITSTATUS(status);
 }
 
-int run(const Options &o) {
-    set_quiet(o.quiet);
-    SceneDescription scene = load_scene(o.scene);
+// Makes the sweep of one scene in that folder, and its record.
+int sweep(const Options &o, SceneDescription scene, const std::filesystem::path &folder, SweepRecord &record) {
     set_size(scene.camera, o.width, 0);
     set_crop(scene.camera, o.crop);
     const std::vector<Candidate> strategies = as_usage([&] { return parse_strategies(scene, o.strategies, o.math); });
     const Sources sources = load_sources(o.scene.cl_dir);
-    SweepPlan plan{.folder = {},
+    SweepPlan plan{.folder = folder,
                    .seed = o.seed,
                    .reference_spp = o.reference_spp,
                    .clock = o.clock == "cpu" ? Clock::cpu : Clock::kernel,
@@ -207,9 +209,8 @@ int run(const Options &o) {
     const std::vector<DevicePick> devices = pick_devices(o);
     const std::vector<Candidate> candidates = cross(strategies, devices);
     const SweepRecord fresh = fresh_record(o, scene, devices);
-    plan.folder = o.out.empty() ? scene.file.stem().string() + "_sweep" : o.out;
     make_folder(plan.folder);
-    SweepRecord record = resume(plan.folder, fresh);
+    record = resume(plan.folder, fresh);
     for (const Candidate &c : candidates) // all rows at once, as references to them are kept
         record.strategy(c.name, c.label).device = c.device;
     save(record, plan.folder); // fails early if the folder cannot be written
@@ -223,7 +224,75 @@ int run(const Options &o) {
                 return code;
         }
     write_results(record, plan.folder);
-    return 0;
+    return exit_done;
+}
+
+nlohmann::json report_of(const SweepRecord &record, const SweepSummary &summary, const std::filesystem::path &folder) {
+    const std::vector<StrategySummary> &strategies = summary.strategies;
+    nlohmann::json not_told_apart = nlohmann::json::array(), devices = nlohmann::json::array();
+    for (size_t i = 0; i < strategies.size(); i++)
+        if (i != summary.best && !is_slower(strategies[i]))
+            not_told_apart.push_back(strategies[i].record->name);
+    for (const DeviceRecord &device : record.devices)
+        devices.push_back(object({{"name", device.name}, {"driver", device.driver}}));
+    return object({{"scene", record.scene},
+                   {"dialect", record.dialect},
+                   {"definitions", record.definitions},
+                   {"devices", devices},
+                   {"clock", record.clock},
+                   {"width", record.width},
+                   {"height", record.height},
+                   {"replicates", record.replicates},
+                   {"spp", record.spp},
+                   {"left_out_spp", record.left_out_spp},
+                   {"reference", object({{"made_by", record.reference.made_by}, {"spp", record.reference.spp}})},
+                   {"folder", folder.string()},
+                   {"fastest", strategies[summary.best].record->name},
+                   {"not_told_apart", not_told_apart},
+                   {"strategies", json_of(summary)}});
+}
+
+int sweep_values(const Options &o, const std::filesystem::path &folder) {
+    Variation variation = load_variation(o.scene, o.vary);
+    std::vector<SweepRecord> records(variation.variants.size()); // the summaries refer to them
+    std::vector<ValueSweep> sweeps;
+    for (size_t i = 0; i < records.size(); i++) {
+        Variant &variant = variation.variants[i];
+        print("{}={}\n", variation.name, variant.value);
+        if (const int code = sweep(o, std::move(variant.scene), folder / variant.folder, records[i]))
+            return code;
+        sweeps.push_back({variant.value, variant.folder, summarise(records[i])});
+    }
+    nlohmann::json values = nlohmann::json::array();
+    for (size_t i = 0; i < sweeps.size(); i++) {
+        values.push_back(report_of(records[i], sweeps[i].summary, folder / sweeps[i].folder));
+        values.back()["value"] = sweeps[i].value;
+    }
+    const nlohmann::json report = object({{"vary", variation.name}, {"values", values}});
+    const std::string scene = o.scene.file.string();
+    write_json(folder / "vary.json", "sweep", report);
+    write_json(o.json, "sweep", report);
+    write_safely(folder / "index.html", html_table_page(scene, variation.name, sweeps));
+    print_text(text_table(variation.name, sweeps));
+    info(fmt::format("wrote   {}", (folder / "index.html").string()));
+    return exit_done;
+}
+
+int run(const Options &o) {
+    set_quiet(o.quiet);
+    const std::filesystem::path folder = o.out.empty() ? o.scene.file.stem().string() + "_sweep" : o.out;
+    const bool varied = !o.vary.empty();
+    if (std::filesystem::exists(folder / (varied ? "sweep.json" : "vary.json"))) // index.html can be of one only
+        throw Error(fmt::format("{}: holds a sweep {} --vary; give another folder with -o", folder.string(),
+                                varied ? "without" : "with"));
+    prepare_json(o.json);
+    if (varied)
+        return sweep_values(o, folder);
+    SweepRecord record;
+    const int code = sweep(o, load_scene(o.scene), folder, record);
+    if (code == exit_done)
+        write_json(o.json, "sweep", report_of(record, summarise(record), folder));
+    return code;
 }
 
 } // namespace
@@ -232,6 +301,10 @@ Command sweep_command() {
     auto o = std::make_shared<Options>();
     std::vector<OptionRow> rows = scene_rows(o->scene);
     std::erase_if(rows, [](const OptionRow &row) { return row.flags == "--math"; }); // --math takes several modes here
+    OptionRow vary =
+        vary_row(o->vary, "one sweep a value, with its own reference and budget, in the folder NAME=V below -o, and a "
+                          "table over the values (index.html, vary.json)");
+    vary.excludes = "--reference";
     return {
         .name = "sweep",
         .help = "Measure error against time of several strategies on a scene, as one HTML page",
@@ -294,10 +367,12 @@ Command sweep_command() {
               .help = "Pixels; keeps the aspect [the scene's]",
               .check = Range{1, 65535}},
              crop_row(o->crop),
+             vary,
              {.flags = "-o,--output",
               .target = &o->out,
               .help = "Folder; a sweep that is already there is continued [SCENE_sweep]",
               .type = "FOLDER"},
+             json_row(o->json, "the verdict and its figures"),
              {.flags = "--quiet", .target = &o->quiet, .help = "Print the verdict, warnings and errors only"}}),
         .examples = {"opal sweep scenes/cbox_mis.xml",
                      "opal sweep scenes/mixed_room.xml --strategies all --budget 10min -o sweep"},

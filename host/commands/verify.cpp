@@ -8,6 +8,7 @@
 #include "commands/commands.h"
 #include "commands/json_file.h"
 #include "commands/options.h"
+#include "commands/vary.h"
 #include "compare/agreement.h"
 #include "flatten/features.h"
 #include "render/renderer.h"
@@ -25,7 +26,7 @@ constexpr unsigned strata = 1024; // of the stratified sampler, which repeats af
 struct Options {
     SceneOptions scene;
     DeviceOptions device;
-    std::string strategies, out, json;
+    std::string strategies, out, vary, json;
     double budget = 60, significance = 1e-3;
     int width = 0, height = 0;
     unsigned seed = 0;
@@ -56,6 +57,8 @@ void simplify_image(Camera &camera, const Options &o) {
     camera.height = height ? height : side(width / aspect);
     camera.filter = Filter{};
 }
+
+Clock clock_of(const Options &o) { return Clock(0.97 * o.budget); } // the rest is for the tests
 
 std::vector<NamedStrategy> choose(const SceneDescription &scene, const Options &o) {
     std::vector<NamedStrategy> strategies = o.strategies.empty()
@@ -132,18 +135,12 @@ void leave_evidence(const std::filesystem::path &folder, const Agreement &agreem
     print("evidence: {} (image: strategy {}, reference: strategy {})\n", folder.string(), worst.a + 1, worst.b + 1);
 }
 
-int run(const Options &o) {
-    const Clock clock(0.97 * o.budget); // the rest is for the tests
-    set_quiet(o.quiet);
-    SceneDescription scene = load_scene(o.scene);
+// Verifies one scene, and reports on it. folder: for the evidence.
+int verify(const Options &o, SceneDescription scene, const std::filesystem::path &folder, const Clock &clock,
+           nlohmann::json &report) {
     simplify_image(scene.camera, o);
     scene.spp = strata;
     const std::vector<NamedStrategy> strategies = choose(scene, o);
-    const std::filesystem::path folder = o.out.empty() ? "verify_" + scene.file.stem().string() : o.out;
-    if (!std::filesystem::is_directory(folder))
-        check_writable(folder);
-    prepare_json(o.json);
-
     const DevicePick pick = choose_device(o.device);
     info(fmt::format("verify  {}: {} strategies, {} x {} pixels, {} in all, seed {}", scene.file.string(),
                      strategies.size(), scene.camera.width, scene.camera.height, duration_text(o.budget), o.seed));
@@ -166,7 +163,7 @@ int run(const Options &o) {
             duration_text(o.budget), -clock.left(), least_spp));
 
     const Agreement agreement = test_agreement(renders, o.significance);
-    nlohmann::json report = json_of(agreement, renders);
+    report = json_of(agreement, renders);
     report.update(object({{"scene", scene.file.string()},
                           {"dialect", name_of(scene.dialect)},
                           {"definitions", scene.definitions},
@@ -179,8 +176,48 @@ int run(const Options &o) {
     print_text(text_of(agreement, renders));
     if (!agreement.holds() || !o.out.empty())
         leave_evidence(folder, agreement, renders, report);
-    write_json(o.json, "verify", report);
     return agreement.holds() ? exit_done : exit_check_failed;
+}
+
+int verify_values(const Options &o, const std::filesystem::path &folder) {
+    Variation variation = load_variation(o.scene, o.vary);
+    nlohmann::json values = nlohmann::json::array();
+    bool all_agree = true;
+    std::string table = fmt::format("{:<20}  {:<8}  {:<10}  pairs that disagree, samples that are NaN or infinite\n",
+                                    variation.name, "verdict", "p-value");
+    for (Variant &variant : variation.variants) {
+        print("{}={}\n", variation.name, variant.value);
+        nlohmann::json report;
+        const int code = verify(o, std::move(variant.scene), folder / variant.folder, clock_of(o), report);
+        if (code != exit_done && code != exit_check_failed)
+            return code;
+        all_agree = all_agree && code == exit_done;
+        table += fmt::format("{:<20}  {:<8}  {:<10.3g}  {} of {}, {}\n", variant.value,
+                             code == exit_done ? "agree" : "DISAGREE", report["p_value"].get<double>(),
+                             report["rejected_pairs"].get<size_t>(), report["pairs"].size(),
+                             report["invalid_samples"].get<unsigned long long>());
+        report["value"] = variant.value;
+        values.push_back(std::move(report));
+    }
+    print_text(table);
+    write_json(o.json, "verify", object({{"vary", variation.name}, {"agree", all_agree}, {"values", values}}));
+    return all_agree ? exit_done : exit_check_failed;
+}
+
+int run(const Options &o) {
+    const Clock clock = clock_of(o);
+    set_quiet(o.quiet);
+    const std::filesystem::path folder = o.out.empty() ? "verify_" + o.scene.file.stem().string() : o.out;
+    if (!std::filesystem::is_directory(folder))
+        check_writable(folder);
+    prepare_json(o.json);
+    if (!o.vary.empty())
+        return verify_values(o, folder);
+    nlohmann::json report;
+    const int code = verify(o, load_scene(o.scene), folder, clock, report);
+    if (!report.is_null()) // null: interrupted
+        write_json(o.json, "verify", report);
+    return code;
 }
 
 } // namespace
@@ -215,6 +252,8 @@ Command verify_command() {
               .check = Range{1, 65535}},
              {.flags = "--height", .target = &o->height, .help = "Pixels [as --width]", .check = Range{1, 65535}},
              {.flags = "--seed", .target = &o->seed, .help = "Of the random numbers"},
+             vary_row(o->vary, "one verification a value, each with the whole budget and its evidence in the folder "
+                               "NAME=V below -o, and a table of the verdicts"),
              {.flags = "-o,--output",
               .target = &o->out,
               .help = "Folder for the evidence [verify_SCENE, on disagreement only]",

@@ -180,6 +180,17 @@ unsigned long long invalid_samples(const StrategyRecord &s) {
     return count;
 }
 
+std::string known_seconds(const stats::Interval &time) {
+    return std::isfinite(time.estimate) ? seconds_text(time.estimate) : "unknown";
+}
+
+// "the fastest", "3.1 times longer".
+std::string against_fastest(const SweepSummary &summary, const StrategySummary &s) {
+    return &s == &summary.strategies[summary.best] ? "the fastest"
+           : is_slower(s)                          ? number_text(s.relative_time.estimate) + " times longer"
+                                                   : "not told apart from the fastest";
+}
+
 std::string verdict_list(const std::vector<std::string> &sentences) {
     std::string html = "<ul class='verdict'>\n";
     for (const std::string &sentence : sentences)
@@ -188,6 +199,8 @@ std::string verdict_list(const std::vector<std::string> &sentences) {
 }
 
 } // namespace
+
+bool is_slower(const StrategySummary &s) { return bounded(s.relative_time) && s.relative_time.low > 1; }
 
 std::vector<std::string> verdict(const SweepRecord &record, const SweepSummary &summary) {
     const StrategySummary &best = summary.strategies[summary.best];
@@ -212,7 +225,7 @@ std::vector<std::string> verdict(const SweepRecord &record, const SweepSummary &
     for (const StrategySummary *s : others)
         sentences.push_back(fmt::format(
             fmt::runtime(
-                bounded(s->relative_time) && !s->relative_time.contains(1)
+                is_slower(*s)
                     ? "{} needs {}, {} times longer (95 % interval {} to {})."
                     : "{} needs {}; that is not significantly different ({} times longer, 95 % interval {} to {})."),
             s->record->label, seconds_text(s->ranking_time().estimate), number_text(s->relative_time.estimate),
@@ -250,6 +263,69 @@ std::string html_page(const SweepRecord &record, const SweepSummary &summary, co
     html += "<h2>How it was measured</h2>\n" + measurement_text(record);
     html += "<h2>To repeat it</h2>\n<pre>" + html_text(record.command) + "</pre>\n";
     return html + page_tail;
+}
+
+std::string text_table(const std::string &name, const std::vector<ValueSweep> &sweeps) {
+    size_t value_width = name.size(), label_width = std::string("strategy").size();
+    for (const ValueSweep &sweep : sweeps) {
+        value_width = std::max(value_width, sweep.value.size());
+        for (const StrategySummary &s : sweep.summary.strategies)
+            label_width = std::max(label_width, s.record->label.size());
+    }
+    const auto line = [&](const std::string &value, const std::string &label, const std::string &seconds,
+                          const std::string &interval, const std::string &relative) {
+        return fmt::format("{:<{}}  {:<{}}  {:<19}  {:<22}  {}\n", value, value_width, label, label_width, seconds,
+                           interval, relative);
+    };
+    std::string text =
+        line(name, "strategy", "time to relMSE " + error_text(ranking_level), "95 % interval", "against the fastest");
+    for (const ValueSweep &sweep : sweeps)
+        for (const StrategySummary &s : sweep.summary.strategies) {
+            const stats::Interval time = s.ranking_time();
+            text += line(sweep.value, s.record->label, known_seconds(time),
+                         bounded(time) ? seconds_text(time.low) + " to " + seconds_text(time.high) : "unknown",
+                         against_fastest(sweep.summary, s));
+        }
+    return text;
+}
+
+std::string html_table_page(const std::string &scene, const std::string &name, const std::vector<ValueSweep> &sweeps) {
+    std::vector<std::string> labels; // of all sweeps: a strategy may make sense at some values only
+    for (const ValueSweep &sweep : sweeps)
+        for (const StrategySummary &s : sweep.summary.strategies)
+            if (std::find(labels.begin(), labels.end(), s.record->label) == labels.end())
+                labels.push_back(s.record->label);
+    const std::string title = html_text(std::filesystem::path(scene).stem().string() + " by " + name);
+    std::string html = page_head;
+    html += fmt::format("<title>Opal sweeps of {0}</title></head>\n<body>\n<h1>{0}</h1>\n<p>Time to relMSE {1}. Small "
+                        "print: the 95 % interval, and how the time stands to that of the fastest at this value. Each "
+                        "value links its own sweep.</p>\n<table><tr><th>{2}</th>",
+                        title, error_text(ranking_level), html_text(name));
+    for (const std::string &label : labels)
+        html += "<th>" + html_text(label) + "</th>";
+    html += "</tr>\n";
+    for (const ValueSweep &sweep : sweeps) {
+        html += fmt::format("<tr><td><a href=\"{}/index.html\">{}</a></td>", html_text(sweep.folder),
+                            html_text(sweep.value));
+        const std::vector<StrategySummary> &strategies = sweep.summary.strategies;
+        for (const std::string &label : labels) {
+            const auto s = std::find_if(strategies.begin(), strategies.end(),
+                                        [&](const StrategySummary &x) { return x.record->label == label; });
+            if (s == strategies.end()) {
+                html += "<td>&ndash;</td>";
+                continue;
+            }
+            const stats::Interval time = s->ranking_time();
+            const bool best = &*s == &strategies[sweep.summary.best];
+            html += fmt::format(
+                "<td>{0}{1}{2}{3}<small>{4}</small></td>", best ? "<b>" : "", known_seconds(time), best ? "</b>" : "",
+                bounded(time) ? fmt::format("<small>{} to {}</small>", seconds_text(time.low), seconds_text(time.high))
+                              : "",
+                against_fastest(sweep.summary, *s));
+        }
+        html += "</tr>\n";
+    }
+    return html + "</table>\n</body></html>\n";
 }
 
 } // namespace opal

@@ -1,4 +1,5 @@
 // `opal compare` as its users meet it.
+#include "base/exit_code.h"
 #include "image/image.h"
 #include "support/scratch.h"
 
@@ -6,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <random>
 
 using namespace opal;
@@ -136,6 +138,38 @@ TEST_CASE("Pixels that are not finite never pass for equal", "[compare]") {
         CHECK(report["untested"] == "broken.exr has pixels in B that are NaN or infinite");
     }
     CHECK(folder.json("a.exr rough.exr")["untested"] == "rough.exr has pixels in variance.G that are NaN or infinite");
+}
+
+TEST_CASE("A relMSE above the limit of --fail exits with 3", "[compare]") {
+    const ImageFolder folder;
+    folder.put("a.exr", noisy(1, 1));
+    folder.put("b.exr", noisy(1, 2));
+    Image broken = noisy(1, 1);
+    broken.layers[1].values[5] = NAN;
+    folder.put("broken.exr", broken);
+    Image black = noisy(1, 1);
+    for (size_t c = 0; c < 3; c++)
+        std::ranges::fill(black.layers[c].values, 0.f);
+    folder.put("black.exr", black);
+    const double rel_mse = folder.json("a.exr b.exr")["rel_mse"];
+    for (const auto &[pair, limit, code] : {std::tuple{"a.exr b.exr", 0.99 * rel_mse, exit_check_failed},
+                                            {"a.exr b.exr", 1.01 * rel_mse, exit_done},
+                                            {"a.exr b.exr", 0.0, exit_check_failed},
+                                            {"a.exr a.exr", 0.0, exit_done},
+                                            {"a.exr black.exr", 1e6, exit_check_failed},
+                                            {"black.exr black.exr", 0.0, exit_done},
+                                            {"broken.exr a.exr", 1e6, exit_failed}}) {
+        const Outcome outcome = folder.compare(fmt::format("{} --fail {} --quiet --json out.json", pair, limit));
+        INFO(pair << " " << limit << "\n" << outcome.out << outcome.err);
+        CHECK(outcome.exit_code == code);
+        const auto report = nlohmann::json::parse(read_text(folder.scratch / "out.json"));
+        CHECK(report["limit"] == limit);
+        CHECK(report["within_limit"] == (code == exit_done));
+        if (code != exit_failed)
+            CHECK_THAT(outcome.out,
+                       Catch::Contains(code == exit_done ? "is within the limit" : "is not within the limit"));
+    }
+    CHECK(folder.compare("a.exr b.exr --fail -1").exit_code == exit_usage);
 }
 
 TEST_CASE("A crop is held against its part of the whole image", "[compare]") {

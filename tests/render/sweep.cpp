@@ -109,6 +109,54 @@ TEST_CASE("The slope of every independent unbiased strategy is -1 within its int
     }
 }
 
+TEST_CASE("With --vary there is a sweep for each value, with its own reference, and a table over the values",
+          "[sweep]") {
+    SceneFolder folder;
+    std::string text = scene_text;
+    text.replace(text.find("0.8 0.8 0.8"), 11, "$a $a $a");
+    folder.scene = folder.scratch.write("lamp.xml", text);
+    const std::string how = "--strategies lighting=bsdf lighting=emitter --spp 4 --replicates 2 -o out ";
+    const Outcome outcome = folder.sweep(how + "--vary a=0.2,0.8");
+    INFO(outcome.out << outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    const auto of = [&](const std::string &file) {
+        return nlohmann::json::parse(read_text(folder.scratch / ("out/" + file)));
+    };
+    const nlohmann::json dark = of("a=0.2/sweep.json"), bright = of("a=0.8/sweep.json"), table = of("vary.json");
+    CHECK(dark["definitions"]["a"] == "0.2");
+    // The camera sees the lamp from behind, and so nothing but light that the floor reflects.
+    CHECK(bright["reference"]["mean_luminance"].get<double>() ==
+          Approx(4 * dark["reference"]["mean_luminance"].get<double>()));
+    CHECK(table["vary"] == "a");
+    REQUIRE(table["values"].size() == 2);
+    for (const auto &[value, sweep] : {std::pair{table["values"][0], dark}, {table["values"][1], bright}}) {
+        CHECK(value["strategies"] == sweep["summary"]);
+        CHECK(value["fastest"] == "lighting=emitter");
+        const std::string name = value["value"];
+        CHECK_THAT(read_text(folder.scratch / "out/index.html"),
+                   Catch::Contains("href=\"a=" + name + "/index.html\">" + name + "</a>"));
+        CHECK(value["folder"] == "out/a=" + name);
+        CHECK(std::filesystem::exists(folder.scratch / ("out/a=" + name + "/index.html")));
+        CHECK_THAT(outcome.out,
+                   Catch::Matches("(.|\n)*\n" + name + " +lighting=emitter +[0-9.e-]+ s .* the fastest\n(.|\n)*"));
+    }
+    const auto refused = [&](const std::string &arguments, const std::string &reason, int code = exit_usage) {
+        const Outcome refusal = folder.sweep(how + arguments);
+        INFO(arguments << "\n" << refusal.err);
+        CHECK(refusal.exit_code == code);
+        CHECK_THAT(refusal.err, Catch::Contains(reason));
+    };
+    refused("--vary a", "is not NAME=V1,V2,...");
+    refused("--vary a=0.2", "needs at least two values");
+    refused("--vary a=0.2,0.3,0.2", "two values would share the folder a=0.2");
+    refused("--vary a=0.2,0.3 -D a=1", "-D gives a, too");
+    refused("--vary a=0.2,0.3 --reference a.exr", "--vary and --reference exclude each other");
+    refused("--vary b=0.2,0.3 -D a=1", "unknown name of -D 'b'");
+    refused("--vary a=0.4,bright", "bright", exit_failed); // before anything is rendered
+    CHECK_FALSE(std::filesystem::exists(folder.scratch / "out/a=0.4"));
+    refused("-D a=0.2", "out: holds a sweep with --vary", exit_failed);
+}
+
 TEST_CASE("Names of any bytes are swept, and gone on with", "[sweep]") {
     SceneFolder folder;
     folder.scene = folder.scratch.write("l\344mp.xml", scene_text);

@@ -66,6 +66,41 @@ TEST_CASE("The time left that verify tells is never more than its budget", "[ver
         CHECK(seconds < 4);
 }
 
+TEST_CASE("With --vary each value is verified, and one that disagrees decides the exit code", "[verify][stat]") {
+    SceneFolder folder;
+    std::string text = scene_text;
+    text.replace(text.find("0.5 0.5 0.5"), 11, "$a $a $a");
+    folder.scene = folder.scratch.write("wall.xml", text);
+    const std::string how = "--vary a=0.3,0.6 --budget 4s --strategies 'lighting=mis;lighting=emitter'";
+    const Outcome right = folder.verify(how);
+    INFO(right.out << right.err);
+    CHECK(right.exit_code == exit_done);
+    const nlohmann::json report = folder.report();
+    CHECK(report["vary"] == "a");
+    CHECK(report["agree"] == true);
+    REQUIRE(report["values"].size() == 2);
+    CHECK(report["values"][1]["value"] == "0.6");
+    CHECK(report["values"][1]["definitions"]["a"] == "0.6");
+    CHECK_FALSE(std::filesystem::exists(folder.scratch / "verify_wall"));
+    for (const char *value : {"0.3", "0.6"})
+        CHECK_THAT(right.out, Catch::Matches(fmt::format("(.|\n)*\n{} +agree +[0-9.e-]+ +0 of 1, 0\n(.|\n)*", value)));
+
+    // A wall that reflects nothing does not show the light samples' bias.
+    const Mutant mutant{"light samples 50 % too bright", "integrators/steps.cl",
+                        "light.radiance), fabs(wo.z) * inverse_pdf",
+                        "light.radiance), R(1.5) * fabs(wo.z) * inverse_pdf"};
+    const Outcome wrong = folder.verify("--vary a=0.6,0 --budget 4s --strategies 'lighting=bsdf;lighting=emitter'" +
+                                        folder.wrong_kernels(mutant));
+    INFO(wrong.out << wrong.err);
+    CHECK(wrong.exit_code == exit_check_failed);
+    CHECK(folder.report()["agree"] == false);
+    CHECK(folder.report()["values"][0]["agree"] == false);
+    CHECK(folder.report()["values"][1]["agree"] == true);
+    CHECK_THAT(wrong.out, Catch::Contains("\n0.6                   DISAGREE"));
+    CHECK(std::filesystem::exists(folder.scratch / "verify_wall/a=0.6/verify.json"));
+    CHECK_FALSE(std::filesystem::exists(folder.scratch / "verify_wall/a=0"));
+}
+
 TEST_CASE("All sensible strategies of a right renderer agree", "[verify][stat]") {
     const SceneFolder folder;
     const Outcome outcome = folder.verify("--budget 20s");
