@@ -3,11 +3,13 @@
 #include "base/json.h"
 #include "base/log.h"
 #include "commands/commands.h"
+#include "commands/json_file.h"
 #include "device/ask_driver.h"
 #include "image/image.h"
 
 #include <OpenEXR/OpenEXRConfig.h>
 #include <fmt/format.h>
+#include <memory>
 #include <png.h>
 #include <pugixml.hpp>
 
@@ -36,9 +38,14 @@ std::vector<Part> libraries() {
                                           NLOHMANN_JSON_VERSION_PATCH)}};
 }
 
-int run() {
+int run(const std::string &json) {
+    prepare_json(json);
+    nlohmann::json report = nlohmann::json::object();
     print("opal {}\n", OPAL_VERSION);
-    const auto row = [](const std::string &name, const std::string &value) { print("{:<15}{}\n", name, value); };
+    const auto row = [&](const std::string &name, const std::string &value) {
+        print("{:<15}{}\n", name, value);
+        report["parts"].push_back(object({{"name", name}, {"version", value}}));
+    };
     row("commit", OPAL_COMMIT);
     row("compiler", compiler());
     for (const Part &part : libraries())
@@ -49,16 +56,19 @@ int run() {
                              : driver.library.empty()        ? driver.name + " (names no library)"
                              : driver.library == driver.name ? driver.name
                                                              : driver.name + ", " + driver.library);
+    write_json(json, "version", report);
     return exit_done;
 }
 
 } // namespace
 
 Command version_command() {
+    const auto json = std::make_shared<std::string>();
     return {.name = "version",
             .help = "Print version, commit, compiler, libraries, and the OpenCL drivers that are installed",
-            .examples = {"opal version", "opal devices"},
-            .run = [] { return run(); }};
+            .options = {json_row(*json, "the same")},
+            .examples = {"opal version", "opal version --json -"},
+            .run = [json] { return run(*json); }};
 }
 
 } // namespace opal
