@@ -9,7 +9,7 @@ using namespace opal::test;
 
 namespace {
 
-const std::string light_hit = "v3_mul(path->throughput, light_met(scene, path, s, on_surface, active))";
+const std::string light_hit = "v3_mul(path->throughput, light_met(scene, path, &s, on_surface, active))";
 const std::string first_only = "to_real(uints_pick(to_mask(path->depth == 1u), (uints)(2), (uints)(1)))";
 
 const std::vector<Control> furnaces = {

@@ -13,7 +13,7 @@ using namespace opal::test;
 
 namespace {
 
-const std::string light_hit = "v3_mul(path->throughput, light_met(scene, path, s, on_surface, active))";
+const std::string light_hit = "v3_mul(path->throughput, light_met(scene, path, &s, on_surface, active))";
 const std::string heuristic = "1 / (1 + (CHOSEN(scene, mis, power) ? ratio * ratio : ratio))";
 
 const std::vector<Mutant> planted = {
