@@ -109,7 +109,7 @@ Command extremes_command() {
                      .help = "Samples of each pixel",
                      .check = Range{1, 1 << 24},
                      .default_text = std::to_string(o->settings.spp)},
-                    {.flags = "--seed", .target = &o->settings.seed, .help = "Of the random numbers"},
+                    {.flags = "--seed", .target = &o->settings.seed, .help = "Seed of the random numbers"},
                     json_row(o->json, "all figures"),
                     {.flags = "--plot", .target = &o->plot, .help = "SVG of error against parameter", .type = "FILE"},
                     cl_dir_row(o->cl_dir),

@@ -60,9 +60,8 @@ std::vector<OptionRow> strategy_rows(SceneOptions &options) {
         rows.push_back(override_row(options, option.name, option.values, option.help, option.names));
     rows.push_back({.flags = "--lenient",
                     .target = &options.load.lenient,
-                    .help =
-                        "What Opal does not know in the scene warns instead of failing: an attribute, a property, a "
-                        "tag, or a type, for which the warning says what stands in"});
+                    .help = "Warn instead of fail at an attribute, a property, a tag or a type that Opal does not "
+                            "know. For a type, the warning says what Opal uses instead"});
     rows.push_back({.flags = "--dialect",
                     .target = &options.load.dialect,
                     .help =

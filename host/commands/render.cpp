@@ -368,7 +368,7 @@ Command render_command() {
              crop_row(o->crop),
              {.flags = "--seed",
               .target = &o->seed,
-              .help = "Of the random numbers; the same seed gives the same image"},
+              .help = "Seed of the random numbers; the same seed gives the same image"},
              json_row(o->json, "the statistics of the render"),
              {.flags = "--layers",
               .target = &o->layers,

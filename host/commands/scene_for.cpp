@@ -185,7 +185,8 @@ Command scene_for_command() {
             .help = "Print a scene that shows a mesh, to start from: opal scene-for MODEL.obj > SCENE.xml",
             .options = {{.flags = "MODEL.obj",
                          .target = files.get(),
-                         .help = "Meshes to show, by file names that hold in the scene's folder",
+                         .help = "Meshes to show. Their paths are written into the scene as you type them: give them "
+                                 "relative to its folder",
                          .required = true,
                          .many_words = true}},
             .examples = {"opal scene-for model.obj > scene.xml", "opal scene-for cup.obj saucer.obj > scene.xml"},

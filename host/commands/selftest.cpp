@@ -280,7 +280,7 @@ Command selftest_command() {
                          .target = &o->time_limit,
                          .help = "Seconds for each group of checks [120, or 1200 with --full]",
                          .check = Positive{}},
-                        {.flags = "--seed", .target = &o->seed, .help = "Of the random numbers"},
+                        {.flags = "--seed", .target = &o->seed, .help = "Seed of the random numbers"},
                         json_row(o->json, "the findings"),
                         cl_dir_row(o->cl_dir)},
             .examples = {"opal selftest", "opal selftest --full --device gpu --json selftest.json"},

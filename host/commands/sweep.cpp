@@ -302,8 +302,8 @@ Command sweep_command() {
     std::vector<OptionRow> rows = scene_rows(o->scene);
     std::erase_if(rows, [](const OptionRow &row) { return row.flags == "--math"; }); // --math takes several modes here
     OptionRow vary =
-        vary_row(o->vary, "one sweep a value, with its own reference and budget, in the folder NAME=V below -o, and a "
-                          "table over the values (index.html, vary.json)");
+        vary_row(o->vary, "runs one sweep for each, with its own reference and budget, in the folder "
+                          "NAME=V inside that of -o, and writes a table of all values (index.html, vary.json)");
     vary.excludes = "--reference";
     return {
         .name = "sweep",
@@ -312,14 +312,15 @@ Command sweep_command() {
             rows,
             {{.flags = "--math",
               .target = &o->math,
-              .help = "Cross the strategies with these: precise,fast",
+              .help = "Measure each strategy with each of these modes: precise,fast",
               .check = Accepts{[](const std::string &name) { find_row(math_modes(), "math", name); },
                                names_of(math_modes())},
               .type = "MODE,...",
               .comma_separated = true},
              {.flags = "--device",
               .target = &o->devices,
-              .help = "Cross the strategies with these: each an index of `opal devices`, cpu, gpu, or part of a name "
+              .help = "Measure each strategy on each of these devices: an index of `opal devices`, cpu, gpu, or part "
+                      "of a name "
                       "[the first GPU, else the CPU]",
               .type = "DEVICE,...",
               .comma_separated = true},
@@ -344,7 +345,7 @@ Command sweep_command() {
               .target = &o->replicates,
               .help = "Renders of each point, with seeds of their own; an interval needs at least 2",
               .check = Range{2u, 1000000u}},
-             {.flags = "--seed", .target = &o->seed, .help = "Of the first replicate's random numbers"},
+             {.flags = "--seed", .target = &o->seed, .help = "Seed of the random numbers of the first replicate"},
              {.flags = "--reference",
               .target = &o->reference,
               .help = "EXR with which the images are compared [made by the best strategy]",
@@ -354,13 +355,14 @@ Command sweep_command() {
               .help = "Samples per pixel of the reference that is made [8 times the largest --spp]"},
              {.flags = "--budget",
               .target = &o->budget,
-              .help = "Kernel time for all of it: leaves out the largest --spp until it fits",
+              .help = "Limit for the kernel time of the whole sweep: the largest --spp are left out "
+                      "until it fits",
               .check = Accepts{parse_seconds},
               .type = "TIME"},
              {.flags = "--clock",
               .target = &o->clock,
-              .help = "kernel: seconds of the device's own profile; cpu: of all cores of a CPU device, over their "
-                      "number: steady on a machine that others use, too",
+              .help = "kernel: seconds of the device's own profile; cpu: CPU seconds of all cores, divided by the "
+                      "number of cores. Take cpu if other programs run on the machine",
               .check = OneOf<std::string>{{"kernel", "cpu"}}},
              {.flags = "--width",
               .target = &o->width,

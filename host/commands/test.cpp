@@ -118,7 +118,7 @@ Command test_command() {
                                 .target = &o->significance,
                                 .help = "Level of each file, split over its cases [the file's]",
                                 .check = Range{1e-12, 0.5}},
-                               {.flags = "--seed", .target = &o->seed, .help = "Of the random numbers"},
+                               {.flags = "--seed", .target = &o->seed, .help = "Seed of the random numbers"},
                                json_row(o->json, "the results")},
                               strategy_rows(o->scene)),
             .examples = {"opal test tests/cases/conformance/furnace.xml",

@@ -251,7 +251,7 @@ Command verify_command() {
               .help = "Pixels [32 on the longer side, the scene's aspect]",
               .check = Range{1, 65535}},
              {.flags = "--height", .target = &o->height, .help = "Pixels [as --width]", .check = Range{1, 65535}},
-             {.flags = "--seed", .target = &o->seed, .help = "Of the random numbers"},
+             {.flags = "--seed", .target = &o->seed, .help = "Seed of the random numbers"},
              vary_row(o->vary, "one verification a value, each with the whole budget and its evidence in the folder "
                                "NAME=V below -o, and a table of the verdicts"),
              {.flags = "-o,--output",

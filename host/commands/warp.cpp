@@ -129,7 +129,7 @@ Command warp_command() {
               .target = &o->significance,
               .help = "Level of the test",
               .check = Range{1e-12, 0.5}},
-             {.flags = "--seed", .target = &o->seed, .help = "Of the random numbers"},
+             {.flags = "--seed", .target = &o->seed, .help = "Seed of the random numbers"},
              {.flags = "--plot",
               .target = &o->plot,
               .help = "PNG of the samples' density, the pdf and the residual",
