@@ -61,16 +61,11 @@ int main(int argc, char **argv) {
     int code = opal::exit_failed;
     try {
         code = opal::run(argc, argv);
-    } catch (const std::bad_alloc &) {
-        opal::tell_error("out of memory on the host");
-    } catch (const opal::ErrorList &errors) {
-        for (const std::string &line : errors.lines())
-            opal::tell_error(line.c_str());
     } catch (const opal::UsageError &error) {
-        opal::tell_error(error.what());
+        opal::tell_error(error);
         code = opal::exit_usage;
     } catch (const std::exception &error) {
-        opal::tell_error(error.what());
+        opal::tell_error(error);
     }
     return opal::exit_code_after_output(code);
 }

@@ -1,9 +1,12 @@
 #include "base/log.h"
 
+#include "base/error.h"
+
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <mutex>
+#include <new>
 
 #include <fcntl.h>
 
@@ -73,6 +76,16 @@ const std::vector<std::string> &warnings() { return kept_warnings; }
 void forget_warnings() { kept_warnings.clear(); }
 
 void tell_error(const char *line) { say("error: ", line); }
+
+void tell_error(const std::exception &error) {
+    if (const auto *list = dynamic_cast<const ErrorList *>(&error))
+        for (const std::string &line : list->lines())
+            tell_error(line.c_str());
+    else if (dynamic_cast<const std::bad_alloc *>(&error))
+        tell_error("out of memory on the host");
+    else
+        tell_error(error.what());
+}
 
 void show(const std::string &text) {
     const std::lock_guard lock(streams);

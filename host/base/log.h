@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include <exception>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,9 @@ void detail(const std::string &text); // printed only with --verbose
 void note(const std::string &line);   // prints "note: ...": harmless, and worth knowing once; silent with --quiet
 void warn(const std::string &line);   // prints "warning: ..."
 const std::vector<std::string> &warnings();
-void forget_warnings();            // those so far: the next render's reports begin anew
-void tell_error(const char *line); // prints "error: ..."; the process then ends
+void forget_warnings();                       // those so far: the next render's reports begin anew
+void tell_error(const char *line);            // prints "error: ..."
+void tell_error(const std::exception &error); // the same; a line for each failure of an ErrorList
 // Prints to stderr without a line end: a progress bar. The next message or result takes its place.
 void show(const std::string &text);
 inline constexpr const char *clear_line = "\r\033[K"; // for a terminal: shown alone, it takes the bar away

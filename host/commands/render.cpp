@@ -261,14 +261,6 @@ void check_several(const Options &o) {
             throw UsageError(fmt::format("{} and {}: both images would be {}", other->second, scene, other->first));
 }
 
-void tell_errors(const std::exception &error) {
-    if (const auto *list = dynamic_cast<const ErrorList *>(&error))
-        for (const std::string &line : list->lines())
-            tell_error(line.c_str());
-    else
-        tell_error(error.what());
-}
-
 // Renders one scene after the other. One that fails does not stop the others.
 int render_scenes(Options o) {
     check_several(o);
@@ -280,7 +272,7 @@ int render_scenes(Options o) {
             if (const int code = render_scene(o))
                 return code; // interrupted
         } catch (const std::exception &error) {
-            tell_errors(error);
+            tell_error(error);
             failed.push_back(scene);
         }
     }

@@ -176,7 +176,7 @@ int run_part_apart(Part part, const SweepPlan &plan, const DevicePick &pick, con
         try {
             code = run_part(part, plan, pick, candidates, record);
         } catch (const std::exception &error) {
-            tell_error(error.what());
+            tell_error(error);
         }
         _exit(code);
     }

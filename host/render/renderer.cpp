@@ -202,18 +202,17 @@ bool Renderer::render(unsigned end, const OnLaunch &on_launch) {
     });
 }
 
-// The pixels of the device's film that the image shows: the film is larger by what wide filters need around a crop.
-std::vector<size_t> Renderer::crop_pixels() const {
+// The pixel of the device's film that pixel `p` of the image is: the film is larger by what wide filters need around a
+// crop.
+size_t Renderer::film_pixel(size_t p) const {
     const PixelWindow &film = settings_.film;
-    std::vector<size_t> pixels;
-    for (unsigned y = unsigned(crop_.y) - film.top; y < unsigned(crop_.y + crop_.height) - film.top; y++)
-        for (unsigned x = unsigned(crop_.x) - film.left; x < unsigned(crop_.x + crop_.width) - film.left; x++)
-            pixels.push_back(size_t(y) * film.width + x);
-    return pixels;
+    const size_t x = size_t(crop_.x) - film.left + p % size_t(crop_.width),
+                 y = size_t(crop_.y) - film.top + p / size_t(crop_.width);
+    return y * film.width + x;
 }
 
 Film Renderer::film() const {
-    const std::vector<size_t> shown = crop_pixels();
+    const size_t shown = size_t(crop_.width) * size_t(crop_.height);
     Film film;
     film.width = crop_.width;
     film.height = crop_.height;
@@ -223,18 +222,19 @@ Film Renderer::film() const {
     const auto value = [&](unsigned plane, unsigned low, size_t pixel) { // hi + lo
         return double(planes[plane * pixels_ + pixel]) + double(planes[low * pixels_ + pixel]);
     };
-    film.sum.resize(shown.size());
-    film.squares.resize(shown.size());
-    film.weighted.resize(wide_filter_ ? shown.size() : 0);
-    film.count.resize(shown.size());
-    for (size_t p = 0; p < shown.size(); p++) {
-        film.count[p] = counts[shown[p]];
+    film.sum.resize(shown);
+    film.squares.resize(shown);
+    film.weighted.resize(wide_filter_ ? shown : 0);
+    film.count.resize(shown);
+    for (size_t p = 0; p < shown; p++) {
+        const size_t pixel = film_pixel(p);
+        film.count[p] = counts[pixel];
         for (unsigned c = 0; c < 3; c++)
-            film.sum[p][c] = value(FILM_SUM + c, FILM_SUM_LOW + c, shown[p]);
+            film.sum[p][c] = value(FILM_SUM + c, FILM_SUM_LOW + c, pixel);
         for (unsigned c = 0; c < 4; c++)
-            film.squares[p][c] = value(FILM_SQUARES + c, FILM_SQUARES_LOW + c, shown[p]);
+            film.squares[p][c] = value(FILM_SQUARES + c, FILM_SQUARES_LOW + c, pixel);
         for (unsigned c = 0; wide_filter_ && c < 4; c++)
-            film.weighted[p][c] = value(FILM_WEIGHTED + c, FILM_WEIGHTED_LOW + c, shown[p]);
+            film.weighted[p][c] = value(FILM_WEIGHTED + c, FILM_WEIGHTED_LOW + c, pixel);
     }
     const std::vector<cl_uint> invalid =
         read_buffer<cl_uint>(device_, on_device_->invalid, 1 + 2 * OPAL_INVALID_RECORDS);

@@ -62,7 +62,7 @@ private:
     void set_pass_arguments(cl::Kernel &kernel, unsigned first_argument, unsigned chunk_samples, unsigned pass_samples);
     double launch(const cl::Kernel &kernel, unsigned items);
     unsigned next_pass_samples(unsigned left) const;
-    std::vector<size_t> crop_pixels() const;
+    size_t film_pixel(size_t p) const;
 
     const Device device_; // a copy of handles to the same device
     Settings settings_;

@@ -108,13 +108,15 @@ SceneDescription load_scene(const std::filesystem::path &file, const LoadOptions
     if (root.tag() != "scene")
         root.fail(unknown_name("root", root.tag(), {"scene", "test"}));
     Mistakes mistakes;
-    const ParseContext context = context_for(file, options, mistakes);
+    ParseContext context = context_for(file, options, mistakes);
     const Definitions definitions = document.define(options.definitions, context.handler());
     mistakes.throw_all(); // what lacks its value would be told twice
+    const DialectChoice choice = choose_dialect(root, context);
+    context.dialect = choice.dialect; // so that parse_scene does not look for names again
     SceneDescription scene = parse_scene(root, context);
     scene.definitions = definitions;
     mistakes.throw_all();
-    tell_dialect(scene, choose_dialect(root, context), root.place());
+    tell_dialect(scene, choice, root.place());
     return scene;
 }
 
