@@ -149,9 +149,9 @@ private:
         if (is_texture)
             read_texture(statement, rest);
         else if (is_color)
-            read_color(statement, split_words(rest));
+            read_color(statement, blank_separated(rest));
         else
-            read_number(statement, split_words(rest));
+            read_number(statement, blank_separated(rest));
     }
 
     void add_unknown() {
@@ -159,16 +159,6 @@ private:
             return;
         unknown_ = reading_;
         unknown_place_ = place_of(reading_).text();
-    }
-
-    static std::vector<std::string_view> split_words(std::string_view text) {
-        std::vector<std::string_view> words;
-        while (!(text = trimmed(text)).empty()) {
-            const auto end = std::find_if(text.begin(), text.end(), is_blank);
-            words.push_back(text.substr(0, size_t(end - text.begin())));
-            text.remove_prefix(words.back().size());
-        }
-        return words;
     }
 
     void begin_material(std::string_view name) {
@@ -239,7 +229,7 @@ private:
         MtlTexture texture;
         texture.statement = reading_;
         texture.place = place_of(reading_);
-        std::vector<std::string_view> words = split_words(rest);
+        std::vector<std::string_view> words = blank_separated(rest);
         const char *name_begin = nullptr, *name_end = nullptr;
         for (size_t i = 0; i < words.size();) {
             const std::string option = lower_case(words[i]);
@@ -296,6 +286,16 @@ private:
 };
 
 } // namespace
+
+std::vector<std::string_view> blank_separated(std::string_view text) {
+    std::vector<std::string_view> words;
+    while (!(text = trimmed(text)).empty()) {
+        const auto end = std::find_if(text.begin(), text.end(), is_blank);
+        words.push_back(text.substr(0, size_t(end - text.begin())));
+        text.remove_prefix(words.back().size());
+    }
+    return words;
+}
 
 std::vector<MtlMaterial> read_mtl(const std::filesystem::path &file) {
     const std::string text = read_text_file(file, FileKind::mtl);

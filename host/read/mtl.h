@@ -29,6 +29,8 @@ struct MtlMaterial {
     std::map<std::string, MtlTexture> textures; // map_kd, map_bump, ...
 };
 
+std::vector<std::string_view> blank_separated(std::string_view text); // those between blanks
+
 // Reads all materials of a file in its order; of two with one name the first counts, with a warning. Throws Error
 // "file:line:col: ..." for a malformed number, and for a file that is no MTL.
 std::vector<MtlMaterial> read_mtl(const std::filesystem::path &file);

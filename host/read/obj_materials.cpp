@@ -45,16 +45,11 @@ std::vector<fs::path> files_of(const ObjLibrary &library, const fs::path &obj) {
         if (const fs::path whole = beside(obj, without_quotes(name)); is_file(whole))
             return {whole};
     std::vector<fs::path> files;
-    const std::string blanks = " \t";
-    for (size_t at = names.find_first_not_of(blanks); at != std::string::npos;) {
-        const size_t end = std::min(names.find_first_of(blanks, at), names.size());
-        const std::string word = without_quotes(names.substr(at, end - at));
-        if (const fs::path file = beside(obj, word); is_file(file))
+    for (std::string_view word : blank_separated(names))
+        if (const fs::path file = beside(obj, without_quotes(std::string(word))); is_file(file))
             files.push_back(file);
         else
             warn(fmt::format("{}: no such material library: {}", library.place.text(), file.string()));
-        at = names.find_first_not_of(blanks, end);
-    }
     return files;
 }
 
