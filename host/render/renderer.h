@@ -39,6 +39,10 @@ public:
     // the first pass. Pixels with more samples lie evenly over the image.
     bool render(unsigned end, const OnLaunch &on_launch = {});
 
+    // The samples of a pixel in the renders from the next restart on: the strata of --sampler stratified. At first the
+    // scene's spp.
+    void plan_samples(unsigned spp) { settings_.spp = spp; }
+
     // Empties the film. The next sample has the index `first_sample` and the random numbers of `seed`.
     void restart(unsigned seed, unsigned first_sample = 0);
 
