@@ -20,6 +20,9 @@ public:
     CompiledStrategy(const Device &device, const Candidate &candidate, const Sources &sources,
                      Clock clock = Clock::kernel);
 
+    // Shares the memory of the film with a strategy of the same image, as only one renders at a time.
+    void share_film(const CompiledStrategy &other) { renderer_->share_film(*other.renderer_); }
+
     struct RenderResult {
         Film film;
         Image image;

@@ -68,11 +68,16 @@ private:
         return CompiledStrategy(device_, c, *plan_.sources, plan_.clock);
     }
     // The candidate's compiled strategy, which the first use compiles. It is kept up to the candidate's image at equal
-    // time.
+    // time. All share the memory of one film.
     CompiledStrategy &compiled(size_t candidate) {
         const Candidate &c = candidates_[candidate];
-        if (!compiled_[candidate])
+        if (!compiled_[candidate]) {
             compiled_[candidate] = std::make_unique<CompiledStrategy>(compile(c));
+            const auto other =
+                std::ranges::find_if(compiled_, [&](const auto &one) { return one && one != compiled_[candidate]; });
+            if (other != compiled_.end())
+                compiled_[candidate]->share_film(**other);
+        }
         progress_->tell(c.label);
         return *compiled_[candidate];
     }
