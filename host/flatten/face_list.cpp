@@ -2,6 +2,7 @@
 
 #include "base/math.h"
 #include "bvh/box.h"
+#include "bvh/collapse.h"
 #include "flatten/geometry.h"
 
 #include <algorithm>
@@ -214,6 +215,10 @@ void build_tree(const TriangleSoup &soup, const std::vector<Face> &faces, FlatSc
     for (uint id = 0; id < soup.corners.size(); id++)
         if (!in_list[id])
             others.push_back(id);
+    if (others.empty() && soup.others.empty() && !faces.empty()) {
+        scene.nodes = {empty_node()};
+        return;
+    }
     Bvh bvh = faces.empty() ? build_bvh(soup) : build_bvh(subset_of(soup, others));
     if (!faces.empty())
         map_ids(bvh.blocks, others);
