@@ -13,7 +13,8 @@
 #include "trace/many_lanes/walk.cl"
 #endif
 
-// Are there primitives outside the face list? A program for all scenes finds a root without children where there are none.
+// Are there primitives outside the face list? A program for all scenes finds a root without children where there are
+// none.
 static bool has_tree(const Scene *scene) {
     return GENERAL ? scene->nodes->child[0] != OPAL_NONE : OPAL_HAS_tree;
 }

@@ -150,8 +150,8 @@ FlatScene flatten(const SceneDescription &description, int lanes) {
     fill_strategy(description, flattening, scene.settings);
     gather_bsdfs(description, scene);
     TriangleSoup soup = gather_primitives(description, flattening, scene);
-    build_acceleration(soup, light_points(description, flattening, soup, scene.triangles),
-                       lanes >= FACE_LIST_LANES, !description.strategy.specialise, scene);
+    build_acceleration(soup, light_points(description, flattening, soup, scene.triangles), lanes >= FACE_LIST_LANES,
+                       !description.strategy.specialise, scene);
     gather_emitters(description, flattening, soup, scene);
     scene.features = find_features(description, scene, lanes);
     return scene;
