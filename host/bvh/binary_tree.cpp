@@ -13,7 +13,11 @@ constexpr std::size_t max_sweep_size = 64;     // largest set of which every spl
 constexpr std::size_t min_thread_size = 15000; // both parts of a split may get their own threads from this size on
 constexpr int max_sah_depth = 90;              // deeper splits halve the set, which bounds the depth
 
-using PrimitiveSpan = std::span<BuildPrimitive>;
+// Whether primitives are of different shapes, so that they fit no leaf.
+bool is_mixed(PrimitiveSpan set) {
+    return std::any_of(set.begin(), set.end(),
+                       [&](const BuildPrimitive &p) { return shape_of(p.id) != shape_of(set[0].id); });
+}
 
 float blocks_for(std::size_t count) { return float((count + block_size - 1) / block_size); }
 
@@ -195,11 +199,6 @@ private:
 };
 
 } // namespace
-
-bool is_mixed(std::span<const BuildPrimitive> set) {
-    return std::any_of(set.begin(), set.end(),
-                       [&](const BuildPrimitive &p) { return shape_of(p.id) != shape_of(set[0].id); });
-}
 
 std::size_t halve_at_median(PrimitiveSpan set) {
     const Box centers = center_bounds(set);

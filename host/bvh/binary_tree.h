@@ -27,11 +27,10 @@ struct BinaryTree {
 // split where both parts together have less area. `primitives` must not be empty.
 BinaryTree build_binary_tree(std::vector<BuildPrimitive> primitives);
 
-// Whether primitives are of different shapes, so that they fit no leaf.
-bool is_mixed(std::span<const BuildPrimitive> set);
+using PrimitiveSpan = std::span<BuildPrimitive>;
 
 // Partitions the set at the median of its centres along their longest axis. Returns the size of the first half, which
 // is the larger one where the count is odd.
-std::size_t halve_at_median(std::span<BuildPrimitive> set);
+std::size_t halve_at_median(PrimitiveSpan set);
 
 } // namespace opal

@@ -19,19 +19,14 @@ Box box_of(const TriangleSoup &soup, uint id) {
     return box;
 }
 
-// The soup with some of the triangles only, numbered by their place in `ids`.
-TriangleSoup subset_of(const TriangleSoup &soup, const std::vector<uint> &ids) {
-    TriangleSoup part{soup.vertices, {}, soup.others};
-    for (uint id : ids)
-        part.corners.push_back(soup.corners[id]);
-    return part;
-}
+std::size_t blocks_for(std::size_t primitives) { return (primitives + OPAL_WIDTH - 1) / OPAL_WIDTH; }
 
-// Replaces each id i in the blocks of a subset by ids[i], the triangle's id in the scene.
-void map_ids(std::vector<TriangleBlock> &blocks, const std::vector<uint> &ids) {
-    for (TriangleBlock &block : blocks)
-        for (uint &id : block.id)
-            id = id == OPAL_NONE ? OPAL_NONE : ids[id];
+// As many ids from place `first` on as a block has.
+BlockIds part_of(const std::vector<uint> &ids, std::size_t first) {
+    BlockIds part;
+    part.fill(OPAL_NONE);
+    std::copy_n(&ids[first], std::min(part.size(), ids.size() - first), part.begin());
+    return part;
 }
 
 // Puts primitives together as the tree's leaves ask. `single` holds each primitive of a shape, in the first place of a
@@ -205,24 +200,23 @@ std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, std:
 }
 
 void build_tree(const TriangleSoup &soup, const std::vector<Face> &faces, FlatScene &scene) {
-    std::vector<char> in_list(soup.corners.size());
-    for (const Face &face : faces)
-        for (uint id : {face.first, face.second})
-            if (id != OPAL_NONE)
-                in_list[id] = 1;
-    std::vector<uint> others;
-    for (uint id = 0; id < soup.corners.size(); id++)
-        if (!in_list[id])
-            others.push_back(id);
-    Bvh bvh = faces.empty() ? build_bvh(soup) : build_bvh(subset_of(soup, others));
-    if (!faces.empty())
-        map_ids(bvh.blocks, others);
+    std::vector<uint> listed;
+    for (const Face &face : faces) {
+        listed.push_back(face.first);
+        if (face.second != OPAL_NONE)
+            listed.push_back(face.second);
+    }
+    std::sort(listed.begin(), listed.end());
+    Bvh bvh = build_bvh(soup, listed);
     scene.sah_cost = sah_cost(bvh);
     scene.nodes = std::move(bvh.nodes);
-    scene.triangle_blocks = std::move(bvh.blocks);
+    // With room for those of the face list.
+    scene.triangle_blocks.reserve(bvh.leaves[SHAPE_triangle].size() + blocks_for(2 * faces.size()));
+    for (const BlockIds &ids : bvh.leaves[SHAPE_triangle])
+        scene.triangle_blocks.push_back(pack_block(soup, ids));
 #define OPAL_FILL_BLOCKS(name, Block)                                                                                  \
     if (SHAPE_##name != SHAPE_triangle)                                                                                \
-        scene.name##_blocks = fill_blocks(scene.name##_blocks, bvh.other_blocks[SHAPE_##name]);
+        scene.name##_blocks = fill_blocks(scene.name##_blocks, bvh.leaves[SHAPE_##name]);
     OPAL_SHAPES(OPAL_FILL_BLOCKS)
 #undef OPAL_FILL_BLOCKS
 }
@@ -253,10 +247,10 @@ void list_faces(const TriangleSoup &soup, std::vector<Face> faces, const std::op
         if (scene.faces.size() == size_t(idle - faces.begin()))
             scene.settings.face_list_to_light = scene.settings.face_list;
     }
-    if (!faces.empty()) {
-        std::vector<TriangleBlock> blocks = pack_blocks(subset_of(soup, shapes));
-        map_ids(blocks, ids);
-        scene.triangle_blocks.insert(scene.triangle_blocks.end(), blocks.begin(), blocks.end());
+    for (std::size_t first = 0; first < ids.size(); first += OPAL_WIDTH) {
+        TriangleBlock block = pack_block(soup, part_of(shapes, first));
+        std::ranges::copy(part_of(ids, first), block.id);
+        scene.triangle_blocks.push_back(block);
     }
     scene.face_vertices.resize(3 * vertices.size());
     for (const auto &[position, place] : vertices)
