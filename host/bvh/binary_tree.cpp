@@ -214,13 +214,14 @@ std::size_t halve_at_median(PrimitiveSpan set) {
     return half;
 }
 
-BinaryTree build_binary_tree(std::vector<BuildPrimitive> primitives) {
+BinaryTree build_binary_tree(LargeVector<BuildPrimitive> primitives) {
     assert(!primitives.empty());
     const uint count = uint(primitives.size());
     BinaryTree tree;
     tree.primitives = std::move(primitives);
     // The worst case is a leaf for each primitive; pages that are never written cost no memory.
     tree.nodes = std::make_unique_for_overwrite<BinaryNode[]>(2 * std::size_t(count));
+    advise_huge_pages(tree.nodes.get(), 2 * std::size_t(count) * sizeof(BinaryNode));
     Builder builder(tree);
     builder.init_node(0, 0, count);
     builder.build(0, 0);

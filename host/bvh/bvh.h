@@ -2,6 +2,7 @@
 // them that are its leaves.
 #pragma once
 
+#include "base/large_vector.h"
 #include "bvh/box.h"
 #include "shapes/list.h"
 #include "shared/types.h"
@@ -25,16 +26,16 @@ struct BoundedPrimitive {
 // The primitives of a scene in flattened units: an indexed triangle mesh, no triangle of which is degenerate, and
 // primitives of other shapes.
 struct TriangleSoup {
-    std::vector<Point3f> vertices;
-    std::vector<std::array<uint, 3>> corners = {}; // three vertex indices for each triangle id
+    LargeVector<Point3f> vertices;
+    LargeVector<std::array<uint, 3>> corners = {}; // three vertex indices for each triangle id
     std::vector<BoundedPrimitive> others = {};
 };
 
 using BlockIds = std::array<uint, OPAL_WIDTH>; // ids of a block's primitives; OPAL_NONE in unused places, the last ones
 
 struct Bvh {
-    std::vector<BvhNode> nodes; // the root first, parents before their children; never empty
-    std::array<std::vector<BlockIds>, OPAL_SHAPE_BITS> leaves = {}; // by shape; each will be a block of that shape
+    LargeVector<BvhNode> nodes; // the root first, parents before their children; never empty
+    std::array<LargeVector<BlockIds>, OPAL_SHAPE_BITS> leaves = {}; // by shape; each will be a block of that shape
 };
 
 // Costs in the surface area heuristic: a visit of a node and the test of a block.

@@ -43,7 +43,7 @@ public:
 private:
     const BinaryTree &tree_;
     const bool has_others_; // primitives of other shapes than triangles
-    std::vector<ForestTable> tables_;
+    LargeVector<ForestTable> tables_;
     Bvh bvh_;
 
     // The most levels of nodes that emit_balanced makes of `count` primitives.

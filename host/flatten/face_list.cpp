@@ -32,8 +32,8 @@ BlockIds part_of(const std::vector<uint> &ids, std::size_t first) {
 // Puts primitives together as the tree's leaves ask. `single` holds each primitive of a shape, in the first place of a
 // block of its own. A block's rows have OPAL_WIDTH words; unused places repeat the first primitive, but have no id.
 template <class Block>
-std::vector<Block> fill_blocks(const std::vector<Block> &single, const std::vector<BlockIds> &leaves) {
-    std::vector<Block> filled(leaves.size());
+LargeVector<Block> fill_blocks(const LargeVector<Block> &single, const LargeVector<BlockIds> &leaves) {
+    LargeVector<Block> filled(leaves.size());
     for (std::size_t i = 0; i < leaves.size(); i++) {
         for (int place = 0; place < OPAL_WIDTH; place++) {
             const uint id = leaves[i][leaves[i][place] == OPAL_NONE ? 0 : place];
@@ -80,7 +80,7 @@ template <class Corners> void rotate_corners(Corners &corners, int by) {
 
 // Returns the face of both triangles if they make a quadrilateral, and rotates their corners to A B C and D C B; else
 // the face of the first triangle alone.
-Face make_face(uint first, uint second, TriangleSoup &soup, std::vector<Triangle> &triangles) {
+Face make_face(uint first, uint second, TriangleSoup &soup, LargeVector<Triangle> &triangles) {
     const auto corner = [&](uint id, int i) { return soup.vertices[soup.corners[id][size_t(i % 3)]]; };
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
@@ -183,7 +183,7 @@ std::vector<uint> choose_face_list(const TriangleSoup &soup) {
     return chosen;
 }
 
-std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, std::vector<Triangle> &triangles) {
+std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, LargeVector<Triangle> &triangles) {
     std::vector<Face> faces;
     std::vector<uint> left = ids;
     while (!left.empty()) {

@@ -496,7 +496,7 @@ TEST_CASE("reinsertion mends a poor tree and keeps it whole", "[bvh]") {
 
 TEST_CASE("the parts of long triangles cover them, and make a cheaper tree that finds the same", "[bvh]") {
     const TriangleSoup soup = needles(3000, 6);
-    const std::vector<BuildPrimitive> whole = whole_primitives(soup), parts = split_primitives(soup);
+    const LargeVector<BuildPrimitive> whole = whole_primitives(soup), parts = split_primitives(soup);
     REQUIRE(parts.size() > whole.size());
     CHECK(parts.size() < 3 * whole.size());
     std::vector<std::vector<Box>> boxes(soup.corners.size());
