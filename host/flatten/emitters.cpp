@@ -39,9 +39,9 @@ std::vector<uint> triangle_slots(const FlatScene &scene) {
 
 class EmitterGatherer {
 public:
-    EmitterGatherer(const SceneDescription &description, const Flattening &flattening, const TriangleSoup &soup,
-                    FlatScene &scene)
-        : description_(description), flattening_(flattening), soup_(soup), scene_(scene) {}
+    EmitterGatherer(const SceneDescription &description, const Flattening &flattening, double radius,
+                    const TriangleSoup &soup, FlatScene &scene)
+        : description_(description), flattening_(flattening), radius_(radius), soup_(soup), scene_(scene) {}
 
     void gather() {
         uint end = 0; // triangles are in the order of their meshes
@@ -53,16 +53,16 @@ public:
             if (radiance && !is_black(*radiance) && begin != end)
                 scene_.meshes[mesh].emitter = add_mesh(description_.meshes[mesh], begin, end);
         }
-        const double radius = extent_of(description_).radius();
         for (const Light &light : description_.lights)
             if (!is_black(light))
-                add_light(light, radius);
+                add_light(light);
         fill_emitter_choice();
     }
 
 private:
     const SceneDescription &description_;
     const Flattening &flattening_;
+    const double radius_;
     const TriangleSoup &soup_;
     FlatScene &scene_;
     std::vector<uint> slots_;
@@ -87,7 +87,7 @@ private:
         return add(record, pi * luminance(*mesh.radiance) * area * (mesh.emits_on_both_sides ? 2 : 1));
     }
 
-    void add_light(const Light &light, double radius) {
+    void add_light(const Light &light) {
         if (is_environment(light.kind())) {
             if (scene_.settings.environment != OPAL_NONE)
                 throw Error(fmt::format("{}: a second environment: rays that leave the scene meet one only",
@@ -100,7 +100,7 @@ private:
     if (const auto *own = std::get_if<emitter_##name>(&light.parameters))                                              \
         record.u.of_##name = flattened(*own, flattening_);
         OPAL_SCENE_EMITTERS(OPAL_STORE_EMITTER)
-        add(record, power_of(light, radius) * flattening_.scale * flattening_.scale);
+        add(record, power_of(light, radius_) * flattening_.scale * flattening_.scale);
     }
 
     void fill_emitter_choice() {
@@ -119,10 +119,10 @@ private:
 
 } // namespace
 
-void gather_emitters(const SceneDescription &description, const Flattening &flattening, const TriangleSoup &soup,
-                     FlatScene &scene) {
+void gather_emitters(const SceneDescription &description, const Flattening &flattening, double radius,
+                     const TriangleSoup &soup, FlatScene &scene) {
     scene.settings.environment = OPAL_NONE;
-    EmitterGatherer(description, flattening, soup, scene).gather();
+    EmitterGatherer(description, flattening, radius, soup, scene).gather();
     scene.settings.emitter_count = uint(scene.emitters.size());
 }
 

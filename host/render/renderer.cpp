@@ -45,6 +45,7 @@ std::vector<unsigned> spread_order(unsigned count) {
 } // namespace
 
 struct Renderer::OnDevice {
+    FlatScene tables; // that the buffers of `scene` may share
     std::vector<cl::Buffer> scene;
     cl::Buffer samples, film, counts, invalid;
     cl::Kernel render, gather, clear;
@@ -63,7 +64,7 @@ Renderer::LaunchShape Renderer::launch_shape() const {
     return s;
 }
 
-Renderer::Renderer(const Device &device, const FlatScene &scene, const RenderOptions &options)
+Renderer::Renderer(const Device &device, FlatScene scene, const RenderOptions &options)
     : device_(device), settings_(scene.settings), crop_(scene.crop), options_(options),
       pixels_(size_t(scene.settings.film.width) * scene.settings.film.height),
       wide_filter_(scene.features[FEATURE_wide_filter]), on_device_(std::make_unique<OnDevice>()) {
@@ -77,7 +78,10 @@ Renderer::Renderer(const Device &device, const FlatScene &scene, const RenderOpt
     const RunningProgress compiling("compile");
     const cl::Program program = build_program(device, program_text(scene.features, options.build, *options.sources),
                                               options.build, &compile_seconds_);
-    on_device_->scene = upload_scene(device, scene);
+    on_device_->tables = std::move(scene);
+    on_device_->scene = upload_scene(device, on_device_->tables);
+    if (!shares_memory(device))
+        on_device_->tables = {};
     on_device_->samples =
         make_buffer(device, CL_MEM_READ_WRITE, pixels_ * sample_bytes * buffer_spp_, nullptr, "the samples of a pass");
     on_device_->film = make_zeros<float>(device, pixels_ * FILM_PLANES, "the film");

@@ -26,8 +26,8 @@ struct RenderOptions {
 class Renderer {
 public:
     // Compiles the program and uploads the scene. Throws Error if the program does not build or memory does not
-    // suffice.
-    Renderer(const Device &device, const FlatScene &scene, const RenderOptions &options);
+    // suffice. A scene that is moved in is not copied by devices that share the host's memory.
+    Renderer(const Device &device, FlatScene scene, const RenderOptions &options);
     ~Renderer();
 
     // A callback after each launch, with the samples of each pixel so far (a fraction within a pass) and the kernel
