@@ -185,11 +185,11 @@ void write_image(const Image &image, const ImageFiles &files, const Display &dis
 }
 
 // Writes the image with the report in its header, and tells the result. Returns the exit code.
-int report(const Request &request, const RenderedFilm &rendered, const RenderReport &render,
+int report(const Request &request, RenderedFilm &rendered, const RenderReport &render,
            const std::optional<AutoChoice> &choice, bool variance) {
     for (const std::string &line : film_warnings(render))
         warn(line);
-    Image image = image_of(rendered.film, variance);
+    Image image = take_image(rendered.film, variance);
     nlohmann::json json = render.json();
     const StopReport stop = report_stop(request.rule, rendered.stopped, render);
     if (choice)
@@ -236,7 +236,7 @@ int render_scene(const Options &o) {
     tell_what_runs(scene, flat, pick, build.lanes, o.seed);
     if (build.math == MathMode::fast)
         warn_of_fast_functions(device, build, sources);
-    const RenderedFilm rendered =
+    RenderedFilm rendered =
         render_film(device, flat, {.build = build, .sources = &sources}, request.rule, o.seed, request.spp);
     const RenderSeconds seconds = {.load = request.load_seconds,
                                    .bvh = bvh_seconds,

@@ -74,4 +74,12 @@ Image image_of(const Film &film, bool variance) {
     return image;
 }
 
+Image take_image(Film &film, bool variance) {
+    Image image = image_of(film, variance);
+    film.sum = {};
+    film.squares = film.weighted = {};
+    film.count = {};
+    return image;
+}
+
 } // namespace opal
