@@ -76,9 +76,11 @@ Image image_of(const Film &film, bool variance) {
 
 Image take_image(Film &film, bool variance) {
     Image image = image_of(film, variance);
-    film.sum = {};
-    film.squares = film.weighted = {};
-    film.count = {};
+    Film freed;
+    std::swap(film.sum, freed.sum);
+    std::swap(film.squares, freed.squares);
+    std::swap(film.weighted, freed.weighted);
+    std::swap(film.count, freed.count);
     return image;
 }
 
