@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "base/signals.h"
 #include "base/units.h"
 #include "commands/commands.h"
@@ -21,6 +22,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <future>
 
 namespace opal {
 
@@ -175,13 +177,18 @@ Request prepare(const Options &o) {
     return request;
 }
 
+// Writes the files side by side.
 void write_image(const Image &image, const ImageFiles &files, const Display &display) {
+    const RunningProgress progress("writing");
+    std::future<void> png;
+    if (!files.png.empty())
+        png = std::async(std::launch::async, [&] { write_png(image, files.png, display); });
     if (files.to_stdout)
         print_text(exr_bytes(image));
     if (!files.exr.empty())
         write_exr(image, files.exr);
-    if (!files.png.empty())
-        write_png(image, files.png, display);
+    if (png.valid())
+        png.get(); // throws what write_png threw
 }
 
 // Writes the image with the report in its header, and tells the result. Returns the exit code.
