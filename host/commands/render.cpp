@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "base/signals.h"
 #include "base/units.h"
 #include "commands/commands.h"
@@ -21,6 +22,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <future>
 
 namespace opal {
 
@@ -175,21 +177,26 @@ Request prepare(const Options &o) {
     return request;
 }
 
+// Writes the files side by side.
 void write_image(const Image &image, const ImageFiles &files, const Display &display) {
+    const RunningProgress progress("writing");
+    std::future<void> png;
+    if (!files.png.empty())
+        png = std::async(std::launch::async, [&] { write_png(image, files.png, display); });
     if (files.to_stdout)
         print_text(exr_bytes(image));
     if (!files.exr.empty())
         write_exr(image, files.exr);
-    if (!files.png.empty())
-        write_png(image, files.png, display);
+    if (png.valid())
+        png.get(); // throws what write_png threw
 }
 
 // Writes the image with the report in its header, and tells the result. Returns the exit code.
-int report(const Request &request, const RenderedFilm &rendered, const RenderReport &render,
+int report(const Request &request, RenderedFilm &rendered, const RenderReport &render,
            const std::optional<AutoChoice> &choice, bool variance) {
     for (const std::string &line : film_warnings(render))
         warn(line);
-    Image image = image_of(rendered.film, variance);
+    Image image = take_image(rendered.film, variance);
     nlohmann::json json = render.json();
     const StopReport stop = report_stop(request.rule, rendered.stopped, render);
     if (choice)
@@ -236,7 +243,7 @@ int render_scene(const Options &o) {
     tell_what_runs(scene, flat, pick, build.lanes, o.seed);
     if (build.math == MathMode::fast)
         warn_of_fast_functions(device, build, sources);
-    const RenderedFilm rendered =
+    RenderedFilm rendered =
         render_film(device, std::move(flat), {.build = build, .sources = &sources}, request.rule, o.seed, request.spp);
     const RenderSeconds seconds = {.load = request.load_seconds,
                                    .bvh = bvh_seconds,

@@ -175,7 +175,7 @@ std::vector<std::string> film_warnings(const RenderReport &render) {
                         render.scene.place.text(), s.samples));
     if (s.empty_pixels == 0)
         return lines;
-    const size_t pixels = film.count.size();
+    const size_t pixels = size_t(film.width) * size_t(film.height);
     std::string words = fmt::format(
         "{} of {} pixels ({:.3g} %) have no {}sample: the image shows nothing there, and its mean is that "
         "of the others, with unknown error",

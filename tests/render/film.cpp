@@ -19,7 +19,7 @@ namespace {
 
 // Kernels that make every sample of pixels 5, 16, 27, ... NaN, or infinite where `what` says so.
 Mutant spoiled(const std::string &what) {
-    return {"pixels " + what, "kernels/queue.cl", "sample[0] = r[lane];",
+    return {"pixels " + what, "kernels/retire.cl", "sample[0] = r[lane];",
             "sample[0] = place[lane] % 11u == 5u ? " + what + " : r[lane];"};
 }
 
@@ -31,6 +31,23 @@ TEST_CASE("Sums of many samples lose nothing, and leave out what is not finite",
 
 TEST_CASE("A crop has the bits of its part of the image, with filters of any width", "[film]") {
     require_all_pass(check_crops(Sources::embedded(), test_seed(42)));
+}
+
+TEST_CASE("A film of several bands has the bits of its parts", "[film]") {
+    SceneDescription scene = gallery(1000, 600); // bands of 2^19 pixels end within a row
+    for (int kind : {FILTER_box, FILTER_gaussian}) {
+        scene.camera.filter.kind = kind;
+        scene.camera.filter.radius = kind == FILTER_box ? 0.5 : 2;
+        scene.camera.crop = {};
+        const Film whole = render(scene, 1, test_seed(43));
+        for (const Crop &crop : {Crop{0, 523, 1000, 3, 1000, 600}, {280, 500, 20, 60, 1000, 600}}) {
+            INFO(text_of(crop));
+            scene.camera.crop = crop;
+            const Image part = image_of(render(scene, 1, test_seed(43)), true);
+            for (const Layer &layer : cropped(image_of(whole, true), crop).layers)
+                CHECK((part.get(layer.name).values == layer.values));
+        }
+    }
 }
 
 // Grey samples of noise around a radiance of 1, count(p) of them in pixel p.
