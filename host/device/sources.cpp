@@ -16,11 +16,13 @@ namespace opal {
 namespace {
 
 // A call that passes lanes passes them through memory, so every function is inlined: 10 to 15 % of the time of a render
-// on PoCL. GPUs' compilers do so unasked. A simulator that knows no inlined code (Oclgrind) is given OPAL_KEEP_CALLS.
-constexpr const char *inline_all = "#if defined(__clang__) && __clang_major__ >= 7 && !defined(OPAL_KEEP_CALLS)\n"
+// on PoCL. GPUs' compilers do so unasked. Clang knows this form of the attribute from version 14 on at the latest;
+// NVIDIA's front end is a clang that is older, and refuses it. A simulator that knows no inlined code (Oclgrind) is
+// given OPAL_KEEP_CALLS.
+constexpr const char *inline_all = "#if defined(__clang__) && __clang_major__ >= 14 && !defined(OPAL_KEEP_CALLS)\n"
                                    "#pragma clang attribute push(__attribute__((always_inline)), apply_to = function)\n"
                                    "#endif\n";
-constexpr const char *inline_end = "\n#if defined(__clang__) && __clang_major__ >= 7 && !defined(OPAL_KEEP_CALLS)\n"
+constexpr const char *inline_end = "\n#if defined(__clang__) && __clang_major__ >= 14 && !defined(OPAL_KEEP_CALLS)\n"
                                    "#pragma clang attribute pop\n"
                                    "#endif\n";
 
@@ -148,11 +150,9 @@ std::string program_text(const Features &features, const BuildOptions &options, 
     text += fmt::format("#define OPAL_AXIS_" #axis " {}\n", features.axes[AXIS_##axis]);
     OPAL_AXES(OPAL_AXIS_DEFINE)
 #undef OPAL_AXIS_DEFINE
-    const bool specialised =
-        features.axes[AXIS_integrator] >= 0; // the general kernel would take half a minute to compile
     const std::string loop = fmt::format("kernels/{}.cl", features.loop);
     const std::string body = sources.expand(options.kernels.empty() ? loop : options.kernels, options.lanes);
-    return specialised ? text + inline_all + body + inline_end : text + body;
+    return text + inline_all + body + inline_end;
 }
 
 } // namespace opal

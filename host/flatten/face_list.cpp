@@ -2,6 +2,7 @@
 
 #include "base/math.h"
 #include "bvh/box.h"
+#include "bvh/collapse.h"
 #include "flatten/geometry.h"
 
 #include <algorithm>
@@ -207,6 +208,10 @@ void build_tree(const TriangleSoup &soup, const std::vector<Face> &faces, FlatSc
             listed.push_back(face.second);
     }
     std::sort(listed.begin(), listed.end());
+    if (!listed.empty() && listed.size() == soup.corners.size() && soup.others.empty()) {
+        scene.nodes = {empty_node()};
+        return;
+    }
     Bvh bvh = build_bvh(soup, listed);
     scene.sah_cost = sah_cost(bvh);
     scene.nodes = std::move(bvh.nodes);

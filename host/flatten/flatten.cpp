@@ -115,7 +115,7 @@ std::optional<std::vector<Point3f>> light_points(const SceneDescription &descrip
 }
 
 void build_acceleration(TriangleSoup &soup, const std::optional<std::vector<Point3f>> &lights, bool with_face_list,
-                        FlatScene &scene) {
+                        bool always_tree, FlatScene &scene) {
     const auto start = std::chrono::steady_clock::now();
     const std::vector<uint> ids = choose_face_list(soup);
     // Triangles are paired at every width: pairing renumbers corners, and sampled points of lights depend on their
@@ -123,7 +123,7 @@ void build_acceleration(TriangleSoup &soup, const std::optional<std::vector<Poin
     std::vector<Face> faces = pair_up(ids, soup, scene.triangles);
     if (!with_face_list)
         faces.clear();
-    if (faces.empty() || ids.size() < soup.corners.size() || !soup.others.empty())
+    if (always_tree || faces.empty() || ids.size() < soup.corners.size() || !soup.others.empty())
         build_tree(soup, faces, scene);
     list_faces(soup, std::move(faces), lights, scene);
     scene.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -141,8 +141,8 @@ FlatScene flatten(const SceneDescription &description, int lanes, const std::fun
     fill_strategy(description, flattening, scene.settings);
     gather_bsdfs(description, scene);
     TriangleSoup soup = gather_primitives(description, flattening, scene, on_gathered);
-    build_acceleration(soup, light_points(description, flattening, soup, scene.triangles),
-                       lanes >= FACE_LIST_LANES && description.strategy.specialise, scene);
+    build_acceleration(soup, light_points(description, flattening, soup, scene.triangles), lanes >= FACE_LIST_LANES,
+                       !description.strategy.specialise, scene);
     gather_emitters(description, flattening, extent.radius(), soup, scene);
     scene.features = find_features(description, scene, lanes);
     return scene;

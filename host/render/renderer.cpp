@@ -6,6 +6,7 @@
 #include "shared/film.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <numbers>
@@ -94,19 +95,35 @@ Renderer::Renderer(const Device &device, FlatScene scene, const RenderOptions &o
         cl_uint argument = 0;
         for (const cl::Buffer &buffer : on_device_->scene)
             on_device_->render.setArg(argument++, buffer);
-        on_device_->render.setArg(argument, on_device_->samples);
+        return 0;
+    });
+    set_film_arguments();
+    compile_seconds_ += warm_up();
+}
+
+Renderer::~Renderer() = default;
+
+void Renderer::set_film_arguments() {
+    with_device(device_.info, [&] {
+        on_device_->render.setArg(cl_uint(on_device_->scene.size()), on_device_->samples);
         on_device_->clear.setArg(0, on_device_->scene[0]);
         on_device_->clear.setArg(1, on_device_->samples);
-        argument = 0;
+        cl_uint argument = 0;
         for (const cl::Buffer &buffer :
              {on_device_->scene[0], on_device_->samples, on_device_->film, on_device_->counts, on_device_->invalid})
             on_device_->gather.setArg(argument++, buffer);
         return 0;
     });
-    compile_seconds_ += warm_up();
 }
 
-Renderer::~Renderer() = default;
+void Renderer::share_film(const Renderer &other) {
+    assert(pixels_ == other.pixels_ && buffer_spp_ == other.buffer_spp_);
+    on_device_->samples = other.on_device_->samples;
+    on_device_->film = other.on_device_->film;
+    on_device_->counts = other.on_device_->counts;
+    on_device_->invalid = other.on_device_->invalid;
+    set_film_arguments();
+}
 
 // Launches the render kernel without any sample to render, because drivers finish compiling at a kernel's first launch
 // of a shape. Returns the seconds, which count as compile time.

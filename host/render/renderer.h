@@ -39,6 +39,14 @@ public:
     // the first pass. Pixels with more samples lie evenly over the image.
     bool render(unsigned end, const OnLaunch &on_launch = {});
 
+    // The samples of a pixel in the renders from the next restart on: the strata of --sampler stratified. At first the
+    // scene's spp.
+    void plan_samples(unsigned spp) { settings_.spp = spp; }
+
+    // Frees the film and takes the memory of the film of `other`, whose image has the same size and filter. From then
+    // on each of both must restart before it renders, and its film be read before the other restarts.
+    void share_film(const Renderer &other);
+
     // Empties the film. The next sample has the index `first_sample` and the random numbers of `seed`.
     void restart(unsigned seed, unsigned first_sample = 0);
 
@@ -57,6 +65,7 @@ private:
         unsigned tiles, chunks; // of the image, and of a tile's samples
     };
     LaunchShape launch_shape() const;
+    void set_film_arguments();
     double warm_up();
     bool render_pass(unsigned samples, const OnLaunch &on_launch);
     void set_pass_arguments(cl::Kernel &kernel, unsigned first_argument, unsigned chunk_samples, unsigned pass_samples);
