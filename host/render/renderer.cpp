@@ -100,7 +100,7 @@ Renderer::Renderer(const Device &device, const FlatScene &scene, const RenderOpt
     buffer_spp_ = unsigned(
         std::clamp<unsigned long long>(bytes / sample_bytes / pixels_, 1, 1ull * max_samples_a_chunk * max_chunks));
     check_room(device, pixels_ * (film_bytes + sample_bytes * buffer_spp_),
-               fmt::format("the film and its samples, {} x {} pixels", settings_.film.width, settings_.film.height));
+               fmt::format("the film of {} x {} pixels and its samples", settings_.film.width, settings_.film.height));
 
     const RunningProgress compiling("compile");
     double film_seconds = 0;
