@@ -58,10 +58,15 @@ static Ray same_ray(Ray ray, mask always) {
     return ray;
 }
 
-static u2 bits_once(const Scene *scene, Sampler s, uints dimension) {
+// A pair of random words by another sampler than the independent one.
+CALLED static u2 bits_of_set(const Scene *scene, Sampler s, uints dimension) {
     uint seed = scene->settings->seed;
     if (CHOSEN(scene, sampler, sobol)) return sobol_pair(s, dimension, seed);
-    if (CHOSEN(scene, sampler, stratified)) return stratified_pair(s, dimension, scene->settings->spp, seed);
+    return stratified_pair(s, dimension, scene->settings->spp, seed);
+}
+
+static u2 bits_once(const Scene *scene, Sampler s, uints dimension) {
+    if (!CHOSEN(scene, sampler, independent)) return bits_of_set(scene, s, dimension);
     u3 h = pcg3d(s.key0, s.key1, dimension);
     u2 pair = {h.x, h.y};
     return pair;

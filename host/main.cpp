@@ -2,6 +2,7 @@
 #include "base/command_line.h"
 #include "base/error.h"
 #include "base/exit_code.h"
+#include "base/large_vector.h"
 #include "base/log.h"
 #include "commands/commands.h"
 #include "commands/help.h"
@@ -56,6 +57,7 @@ int exit_code_after_output(int code) {
 } // namespace opal
 
 int main(int argc, char **argv) {
+    opal::return_large_blocks();
     opal::prepare_streams();
     opal::set_command_line(argc, argv);
     int code = opal::exit_failed;

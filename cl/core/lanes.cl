@@ -8,9 +8,17 @@
 //   ints, uints   one integer a lane. Convert their comparisons by to_mask before combining them with a mask.
 //   real1, real8  one number; eight numbers of one ray (children of a node, triangles of a block)
 //   key1, mask8   an integer as wide as a real1; eight of them (the keys of trace/)
-#if defined(__clang__)
+#if defined(__clang__) && LANES > 1
 // clang warns that wide vectors are passed in memory. It does not matter: every caller is in this program.
 #pragma clang diagnostic ignored "-Wpsabi"
+#endif
+// Is this a program for all scenes?
+#define GENERAL (OPAL_AXIS_integrator < 0)
+// A function with several callers, each of which a program for all scenes would inline a copy into: there it is called.
+#if GENERAL && defined(__clang__)
+#define CALLED __attribute__((noinline))
+#else
+#define CALLED
 #endif
 #define CAT_(a, b) a##b
 #define CAT(a, b) CAT_(a, b)

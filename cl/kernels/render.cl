@@ -30,17 +30,19 @@ kernel void render(SCENE_PARAMETERS, global float *samples, uint first_item, uin
                            chunk_samples, pass_first, pass_samples);
     Starts starts;
     prepare_starts(&scene, queue, &starts);
-    mask active = refill(&scene, &starts, &path, lanes_of(ALL_LANES));
-    while (ANY(active)) {
+    mask active = NO_LANES;
+    for (uint ended = lanes_of(ALL_LANES);;) { // the lanes whose path has ended, a bit each
+        if (ended) {
+            active = active | refill(&scene, &starts, &path, ended);
+            if (!ANY(active)) break;
+        }
         Hit hit = closest_hit(&scene, path.ray, active);
         if (OPAL_REPEAT_traversal) hit = closest_hit(&scene, same_ray(path.ray, hit.t > -1), active);
         add_count(&scene, COUNTER_rays, count_lanes(active));
         add_count(&scene, COUNTER_rounds, 1);
         mask active_next = integrator_step(&scene, &path, hit, active);
-        uint ended = lanes_of(active & !active_next);
+        ended = lanes_of(active & !active_next);
         active = active_next;
-        if (ended == 0) continue;
-        retire(&scene, samples, &starts.queue, &path, ended);
-        active = active | refill(&scene, &starts, &path, ended);
+        if (ended) retire(&scene, samples, &starts.queue, &path, ended);
     }
 }

@@ -51,8 +51,8 @@ enum {
     CHOICE(hemisphere, cosine, "in proportion to the cosine")
 
 #define OPAL_CHOICES_emitter_choice(CHOICE) \
-    CHOICE(emitter_choice, uniform, "all alike") \
-    CHOICE(emitter_choice, power, "in proportion to the emitted power")
+    CHOICE(emitter_choice, power, "in proportion to the emitted power; all alike where it is the same") \
+    CHOICE(emitter_choice, uniform, "all alike")
 
 #define OPAL_CHOICES_triangle_choice(CHOICE) \
     CHOICE(triangle_choice, area, "in proportion to the area") \

@@ -13,11 +13,17 @@
 #include "trace/many_lanes/walk.cl"
 #endif
 
+// Are there primitives outside the face list? A program for all scenes finds a root without children where there are
+// none.
+static bool has_tree(const Scene *scene) {
+    return GENERAL ? scene->nodes->child[0] != OPAL_NONE : OPAL_HAS_tree;
+}
+
 // The nearest hit of each active lane.
-static Hit closest_hit(const Scene *scene, Ray ray, mask active) {
+CALLED static Hit closest_hit(const Scene *scene, Ray ray, mask active) {
     Hit hit = no_hit(ray.tmax);
     if (OPAL_HAS_face_list) hit = faces_closest(scene, ray);
-    if (!OPAL_HAS_tree) return hit;
+    if (!has_tree(scene)) return hit;
     ray.tmax = hit.t;
     TreeRays rays;
     prepare_rays(&rays, scene, ray, active);
@@ -32,10 +38,10 @@ static Hit closest_hit(const Scene *scene, Ray ray, mask active) {
 }
 
 // The active lanes whose ray is blocked between tmin and tmax, by the tree or by the faces `among` of the face list.
-static mask blocked_by(const Scene *scene, Ray ray, FaceRange among, mask active) {
+CALLED static mask blocked_by(const Scene *scene, Ray ray, FaceRange among, mask active) {
     mask blocked = NO_LANES;
     if (OPAL_HAS_face_list && among.faces > 0) blocked = faces_any(scene, ray, among, active);
-    if (!OPAL_HAS_tree) return blocked;
+    if (!has_tree(scene)) return blocked;
     TreeRays rays;
     prepare_rays(&rays, scene, ray, active & !blocked);
     if (rays.walking == 0) return blocked;

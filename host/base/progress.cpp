@@ -101,6 +101,11 @@ RunningProgress::~RunningProgress() {
     thread_.join();
 }
 
+void RunningProgress::tell(std::string step) {
+    const std::lock_guard lock(mutex_);
+    step_ = std::move(step);
+}
+
 void RunningProgress::expect(double seconds) {
     const std::lock_guard lock(mutex_);
     end_ = since(start_) + std::max(seconds, 0.0);
@@ -119,7 +124,9 @@ void RunningProgress::run(const std::string &what) {
     while (!ended_changed_.wait_for(lock, wait(), [&] { return ended_; })) {
         const double seconds = since(start_);
         const auto left = seconds < end_ ? std::optional(end_ - seconds) : std::nullopt;
-        const std::string line = running_line(what, seconds, left, bar);
+        std::string line = running_line(what, seconds, left, bar);
+        if (!step_.empty())
+            line += "  " + step_;
         show(bar ? clear_line + line : line + "\n");
         next += bar ? first_period : line_period;
     }

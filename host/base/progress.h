@@ -39,6 +39,7 @@ public:
     RunningProgress(const RunningProgress &) = delete;
     RunningProgress &operator=(const RunningProgress &) = delete;
 
+    void tell(std::string step);            // what is being done now, at the end of the line
     void expect(double seconds);            // the time left from now on, as the caller knows it
     void update(double done, double total); // the time left by the work that is done; nothing done: not known
 
@@ -49,6 +50,7 @@ private:
     std::mutex mutex_;
     std::condition_variable ended_changed_;
     bool ended_ = false;
+    std::string step_;
     double end_ = 0;     // when all will be done, seconds since the start; 0: not known
     std::thread thread_; // none with --quiet, or within another
 };

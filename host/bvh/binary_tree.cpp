@@ -13,7 +13,11 @@ constexpr std::size_t max_sweep_size = 64;     // largest set of which every spl
 constexpr std::size_t min_thread_size = 15000; // both parts of a split may get their own threads from this size on
 constexpr int max_sah_depth = 90;              // deeper splits halve the set, which bounds the depth
 
-using PrimitiveSpan = std::span<BuildPrimitive>;
+// Whether primitives are of different shapes, so that they fit no leaf.
+bool is_mixed(PrimitiveSpan set) {
+    return std::any_of(set.begin(), set.end(),
+                       [&](const BuildPrimitive &p) { return shape_of(p.id) != shape_of(set[0].id); });
+}
 
 float blocks_for(std::size_t count) { return float((count + block_size - 1) / block_size); }
 
@@ -196,11 +200,6 @@ private:
 
 } // namespace
 
-bool is_mixed(std::span<const BuildPrimitive> set) {
-    return std::any_of(set.begin(), set.end(),
-                       [&](const BuildPrimitive &p) { return shape_of(p.id) != shape_of(set[0].id); });
-}
-
 std::size_t halve_at_median(PrimitiveSpan set) {
     const Box centers = center_bounds(set);
     int axis = 0;
@@ -215,13 +214,14 @@ std::size_t halve_at_median(PrimitiveSpan set) {
     return half;
 }
 
-BinaryTree build_binary_tree(std::vector<BuildPrimitive> primitives) {
+BinaryTree build_binary_tree(LargeVector<BuildPrimitive> primitives) {
     assert(!primitives.empty());
     const uint count = uint(primitives.size());
     BinaryTree tree;
     tree.primitives = std::move(primitives);
     // The worst case is a leaf for each primitive; pages that are never written cost no memory.
     tree.nodes = std::make_unique_for_overwrite<BinaryNode[]>(2 * std::size_t(count));
+    advise_huge_pages(tree.nodes.get(), 2 * std::size_t(count) * sizeof(BinaryNode));
     Builder builder(tree);
     builder.init_node(0, 0, count);
     builder.build(0, 0);

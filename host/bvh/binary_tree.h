@@ -19,19 +19,18 @@ struct BinaryNode {
 struct BinaryTree {
     std::unique_ptr<BinaryNode[]> nodes; // the root first, parents before their children
     uint node_count = 0;
-    std::vector<BuildPrimitive> primitives; // each node's are contiguous
+    LargeVector<BuildPrimitive> primitives; // each node's are contiguous
 };
 
 // Builds the tree top down. The cost of n primitives in a box is ceil(n / block_size) times its area, the cost of the
 // blocks that they will fill. Leaves hold 1 to block_size primitives of one shape; a set that fits a leaf is still
 // split where both parts together have less area. `primitives` must not be empty.
-BinaryTree build_binary_tree(std::vector<BuildPrimitive> primitives);
+BinaryTree build_binary_tree(LargeVector<BuildPrimitive> primitives);
 
-// Whether primitives are of different shapes, so that they fit no leaf.
-bool is_mixed(std::span<const BuildPrimitive> set);
+using PrimitiveSpan = std::span<BuildPrimitive>;
 
 // Partitions the set at the median of its centres along their longest axis. Returns the size of the first half, which
 // is the larger one where the count is odd.
-std::size_t halve_at_median(std::span<BuildPrimitive> set);
+std::size_t halve_at_median(PrimitiveSpan set);
 
 } // namespace opal

@@ -4,7 +4,6 @@
 #include "bvh/reinsertion.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace opal {
 namespace {
@@ -23,12 +22,15 @@ double half_area(const Box &box) {
 
 } // namespace
 
-Bvh build_bvh(const TriangleSoup &soup) {
-    if (soup.corners.empty() && soup.others.empty())
-        return {{empty_node()}, pack_blocks(soup)};
-    BinaryTree tree = build_binary_tree(split_primitives(soup));
+Bvh build_bvh(const TriangleSoup &soup, std::span<const uint> left_out) {
+    if (soup.corners.size() == left_out.size() && soup.others.empty()) {
+        Bvh bvh{{empty_node()}};
+        bvh.leaves[SHAPE_triangle].emplace_back().fill(OPAL_NONE);
+        return bvh;
+    }
+    BinaryTree tree = build_binary_tree(split_primitives(soup, left_out));
     optimise_by_reinsertion(tree);
-    return collapse(tree, soup);
+    return collapse(tree, !soup.others.empty());
 }
 
 BvhNode empty_node() {
@@ -39,31 +41,16 @@ BvhNode empty_node() {
     return node;
 }
 
-TriangleBlock pack_block(const TriangleSoup &soup, const uint *ids, uint count) {
+TriangleBlock pack_block(const TriangleSoup &soup, const BlockIds &ids) {
     TriangleBlock block{};
-    for (uint place = 0; place < block_size; place++) {
-        block.id[place] = place < count ? ids[place] : OPAL_NONE;
-        for (int corner = 0; corner < 3 && count > 0; corner++) {
-            const uint vertex = place < count ? soup.corners[ids[place]][corner] : soup.corners[ids[0]][0];
+    std::copy(ids.begin(), ids.end(), block.id);
+    for (uint place = 0; place < block_size && ids[0] != OPAL_NONE; place++)
+        for (int corner = 0; corner < 3; corner++) {
+            const uint id = ids[place], vertex = id == OPAL_NONE ? soup.corners[ids[0]][0] : soup.corners[id][corner];
             for (int axis = 0; axis < 3; axis++)
                 block.vertex[corner][axis][place] = soup.vertices[vertex][axis];
         }
-    }
     return block;
-}
-
-std::vector<TriangleBlock> pack_blocks(const TriangleSoup &soup) {
-    std::vector<TriangleBlock> packed;
-    std::array<uint, block_size> ids;
-    uint count = 0;
-    for (uint id = 0; id < soup.corners.size(); id++) {
-        ids[count++] = id;
-        if (count == block_size)
-            packed.push_back(pack_block(soup, ids.data(), std::exchange(count, 0)));
-    }
-    if (count > 0 || packed.empty())
-        packed.push_back(pack_block(soup, ids.data(), count));
-    return packed;
 }
 
 double sah_cost(const Bvh &bvh) {

@@ -2,10 +2,12 @@
 // them that are its leaves.
 #pragma once
 
+#include "base/large_vector.h"
 #include "bvh/box.h"
 #include "shapes/list.h"
 #include "shared/types.h"
 
+#include <span>
 #include <vector>
 
 namespace opal {
@@ -24,17 +26,16 @@ struct BoundedPrimitive {
 // The primitives of a scene in flattened units: an indexed triangle mesh, no triangle of which is degenerate, and
 // primitives of other shapes.
 struct TriangleSoup {
-    std::vector<Point3f> vertices;
-    std::vector<std::array<uint, 3>> corners = {}; // three vertex indices for each triangle id
+    LargeVector<Point3f> vertices;
+    LargeVector<std::array<uint, 3>> corners = {}; // three vertex indices for each triangle id
     std::vector<BoundedPrimitive> others = {};
 };
 
 using BlockIds = std::array<uint, OPAL_WIDTH>; // ids of a block's primitives; OPAL_NONE in unused places, the last ones
 
 struct Bvh {
-    std::vector<BvhNode> nodes;        // the root first, parents before their children; never empty
-    std::vector<TriangleBlock> blocks; // the leaves of triangles
-    std::array<std::vector<BlockIds>, OPAL_SHAPE_BITS> other_blocks = {}; // the leaves of the other shapes, by shape
+    LargeVector<BvhNode> nodes; // the root first, parents before their children; never empty
+    std::array<LargeVector<BlockIds>, OPAL_SHAPE_BITS> leaves = {}; // by shape; each will be a block of that shape
 };
 
 // Costs in the surface area heuristic: a visit of a node and the test of a block.
@@ -43,13 +44,13 @@ constexpr double node_cost = 1, block_cost = 1;
 // Builds the tree in three steps: a binary tree by the surface area heuristic, reinsertion, and the collapse to 8
 // children by dynamic programming (Ylitie, Karras, Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through
 // Compressed Wide BVHs", section 3.2). A triangle that split_primitives cuts may be in several blocks, every other one
-// is in one block. No leaf mixes shapes. levels_of(result) <= OPAL_LEVELS. An empty soup gives a root without children
-// and one empty block.
-Bvh build_bvh(const TriangleSoup &soup);
+// is in one block. No leaf mixes shapes. levels_of(result) <= OPAL_LEVELS. left_out: ids of triangles that are not in
+// the tree, in ascending order. A tree over nothing is a root without children and one empty block.
+Bvh build_bvh(const TriangleSoup &soup, std::span<const uint> left_out = {});
 
-// Packs all triangles into blocks in the order of their ids, for scenes without a tree. No triangles give one empty
-// block.
-std::vector<TriangleBlock> pack_blocks(const TriangleSoup &soup);
+// The block of some triangles. An unused place holds a degenerate triangle, the first corner of the first triangle
+// thrice, which no ray hits.
+TriangleBlock pack_block(const TriangleSoup &soup, const BlockIds &ids);
 
 // The expected cost of a ray that meets the root's box, by the surface area heuristic (MacDonald and Booth 1990): the
 // sum of all boxes' areas, times node_cost or block_cost, divided by the root's area.

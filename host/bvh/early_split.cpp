@@ -62,7 +62,7 @@ Polygon clip(const Polygon &polygon, int axis, double plane, double sign) {
 
 // Splits at the middle of the longest axis until no box wastes more than max_waste, in squared units of area.
 void add_parts(const Polygon &polygon, const BuildPrimitive &primitive, double max_waste,
-               std::vector<BuildPrimitive> &parts) {
+               LargeVector<BuildPrimitive> &parts) {
     const Box &box = primitive.box;
     int axis = 0;
     for (int other = 1; other < 3; other++)
@@ -82,21 +82,26 @@ void add_parts(const Polygon &polygon, const BuildPrimitive &primitive, double m
 
 } // namespace
 
-std::vector<BuildPrimitive> whole_primitives(const TriangleSoup &soup) {
-    std::vector<BuildPrimitive> whole(soup.corners.size());
-    whole.reserve(whole.size() + soup.others.size());
+LargeVector<BuildPrimitive> whole_primitives(const TriangleSoup &soup, std::span<const uint> left_out) {
+    LargeVector<BuildPrimitive> whole;
+    whole.reserve(soup.corners.size() - left_out.size() + soup.others.size());
+    auto next_left_out = left_out.begin();
     for (uint id = 0; id < soup.corners.size(); id++) {
-        whole[id] = {Box::empty(), id};
+        if (next_left_out != left_out.end() && *next_left_out == id) {
+            ++next_left_out;
+            continue;
+        }
+        Box &box = whole.emplace_back(BuildPrimitive{Box::empty(), id}).box;
         for (uint vertex : soup.corners[id])
-            whole[id].box.add(soup.vertices[vertex]);
+            box.add(soup.vertices[vertex]);
     }
     for (const BoundedPrimitive &other : soup.others)
         whole.push_back({other.box, other.id});
     return whole;
 }
 
-std::vector<BuildPrimitive> split_primitives(const TriangleSoup &soup) {
-    std::vector<BuildPrimitive> whole = whole_primitives(soup);
+LargeVector<BuildPrimitive> split_primitives(const TriangleSoup &soup, std::span<const uint> left_out) {
+    LargeVector<BuildPrimitive> whole = whole_primitives(soup, left_out);
     const auto wasted_area_of = [&](const BuildPrimitive &primitive) {
         if (shape_of(primitive.id) != SHAPE_triangle)
             return 0.0;
@@ -111,7 +116,7 @@ std::vector<BuildPrimitive> split_primitives(const TriangleSoup &soup) {
     if (waste <= min_wasted_share * area)
         return whole;
     const double max_waste = max_part_waste * waste / double(whole.size());
-    std::vector<BuildPrimitive> parts;
+    LargeVector<BuildPrimitive> parts;
     for (const BuildPrimitive &primitive : whole) {
         if (wasted_area_of(primitive) <= max_waste) {
             parts.push_back(primitive);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <utility>
 #include <vector>
 
 namespace opal {
@@ -32,7 +31,6 @@ public:
         for (auto node = order.begin(); node != end; ++node)
             if (*node != 0 && parents_[*node] != 0)
                 try_move(*node); // children of the root stay
-        reorder();
     }
 
 private:
@@ -118,34 +116,6 @@ private:
             if (node == 0)
                 return;
         }
-    }
-
-    // Renumbers nodes and primitives, so that parents come before their children and each subtree's primitives are
-    // contiguous.
-    void reorder() {
-        auto sorted = std::make_unique_for_overwrite<BinaryNode[]>(tree_.node_count);
-        std::vector<BuildPrimitive> primitives;
-        primitives.reserve(tree_.primitives.size());
-        std::vector<std::pair<uint, uint>> todo{{0, 0}}; // from, to
-        uint count = 1;
-        while (!todo.empty()) {
-            const auto [from, to] = todo.back();
-            todo.pop_back();
-            BinaryNode node = nodes_[from];
-            const uint first = uint(primitives.size());
-            if (node.left) {
-                todo.push_back({node.left + 1, count + 1});
-                todo.push_back({node.left, count});
-                node.left = std::exchange(count, count + 2);
-            } else {
-                const auto begin = tree_.primitives.begin() + node.first;
-                primitives.insert(primitives.end(), begin, begin + node.count);
-            }
-            node.first = first;
-            sorted[to] = node;
-        }
-        tree_.nodes = std::move(sorted);
-        tree_.primitives = std::move(primitives);
     }
 };
 

@@ -238,13 +238,13 @@ int render_scene(const Options &o) {
         scene.strategy = choice->strategy;
     }
     const Stopwatch bvh;
-    const FlatScene flat = flatten(scene, build.lanes);
+    FlatScene flat = flatten_and_free(scene, build.lanes);
     const double bvh_seconds = bvh.seconds();
     tell_what_runs(scene, flat, pick, build.lanes, o.seed);
     if (build.math == MathMode::fast)
         warn_of_fast_functions(device, build, sources);
     RenderedFilm rendered =
-        render_film(device, flat, {.build = build, .sources = &sources}, request.rule, o.seed, request.spp);
+        render_film(device, std::move(flat), {.build = build, .sources = &sources}, request.rule, o.seed, request.spp);
     const RenderSeconds seconds = {.load = request.load_seconds,
                                    .bvh = bvh_seconds,
                                    .compile = rendered.compile_seconds,

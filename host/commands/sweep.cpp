@@ -147,16 +147,14 @@ void write_results(const SweepRecord &record, const std::filesystem::path &folde
     info(fmt::format("wrote   {}", (folder / "index.html").string()));
 }
 
-using Part = void (*)(const SweepPlan &, const Device &, const std::vector<Candidate> &, SweepRecord &);
-
-int run_part(Part part, const SweepPlan &plan, const DevicePick &pick, const std::vector<Candidate> &candidates,
+int run_part(SweepPart part, const SweepPlan &plan, const DevicePick &pick, const std::vector<Candidate> &candidates,
              SweepRecord &record) {
     const Device device = open_device(pick.info);
-    if (part == measure_points)
+    if (part != SweepPart::images)
         info(fmt::format("device  {}: {}", pick.info.index, text_of(pick)));
     watch_interrupts();
     try {
-        part(plan, device, candidates, record);
+        run_sweep(plan, device, candidates, record, part);
     } catch (const Interrupted &) {
         warn("interrupted: the same command goes on where it stopped");
         return interrupt_exit_code();
@@ -166,8 +164,8 @@ int run_part(Part part, const SweepPlan &plan, const DevicePick &pick, const std
 
 // Runs the sweep of one device in a process of its own, as a process can load one driver only. Its results are in the
 // folder.
-int run_part_apart(Part part, const SweepPlan &plan, const DevicePick &pick, const std::vector<Candidate> &candidates,
-                   SweepRecord &record) {
+int run_part_apart(SweepPart part, const SweepPlan &plan, const DevicePick &pick,
+                   const std::vector<Candidate> &candidates, SweepRecord &record) {
     const pid_t child = fork();
     if (child < 0)
         throw Error("no process could be started for device " + pick.info.name);
@@ -214,15 +212,18 @@ int sweep(const Options &o, SceneDescription scene, const std::filesystem::path 
     for (const Candidate &c : candidates) // all rows at once, as references to them are kept
         record.strategy(c.name, c.label).device = c.device;
     save(record, plan.folder); // fails early if the folder cannot be written
-    for (const Part part : {measure_points, render_equal_time_images})
-        for (size_t d = 0; d < devices.size(); d++) {
-            std::vector<Candidate> own;
-            std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(own),
-                         [&](const Candidate &c) { return c.device == d; });
-            const auto run_it = devices.size() == 1 ? run_part : run_part_apart;
-            if (const int code = run_it(part, plan, devices[d], own, record))
-                return code;
-        }
+    if (devices.size() == 1) {
+        if (const int code = run_part(SweepPart::all, plan, devices[0], candidates, record))
+            return code;
+    } else
+        for (const SweepPart part : {SweepPart::points, SweepPart::images})
+            for (size_t d = 0; d < devices.size(); d++) {
+                std::vector<Candidate> own;
+                std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(own),
+                             [&](const Candidate &c) { return c.device == d; });
+                if (const int code = run_part_apart(part, plan, devices[d], own, record))
+                    return code;
+            }
     write_results(record, plan.folder);
     return exit_done;
 }

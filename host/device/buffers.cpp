@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <cstring>
-#include <sys/mman.h>
 
 namespace opal {
 
@@ -17,17 +16,12 @@ namespace {
         what, bytes_text(bytes), bytes_text(device.info.memory), bytes_text(device.info.max_allocation)));
 }
 
-// A CPU device's buffer, in huge pages where the system gives them on request: a walk through a large tree then spends
-// a tenth less on finding its pages. Mapped, such a buffer is the memory that kernels see.
+// A CPU device's buffer, in huge pages. Mapped, such a buffer is the memory that kernels see.
 cl::Buffer make_cpu_buffer(const Device &device, cl_mem_flags flags, unsigned long long bytes, const void *data) {
-    constexpr size_t huge_page = 2u << 20;
     cl::Buffer buffer(device.handles->context, flags, bytes);
-    char *const memory = static_cast<char *>(
-        device.handles->queue.enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0, bytes));
-    char *const first = memory + (huge_page - reinterpret_cast<uintptr_t>(memory) % huge_page) % huge_page;
-    if (first + huge_page <= memory + bytes)
-        madvise(first, size_t(memory + bytes - first) / huge_page * huge_page,
-                MADV_HUGEPAGE); // advice: no harm where it is refused
+    void *const memory =
+        device.handles->queue.enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0, bytes);
+    advise_huge_pages(memory, bytes);
     if (data)
         std::memcpy(memory, data, bytes);
     device.handles->queue.enqueueUnmapMemObject(buffer, memory);
@@ -47,10 +41,11 @@ cl::Buffer make_buffer(const Device &device, cl_mem_flags flags, unsigned long l
     if (bytes > device.info.max_allocation || bytes > device.info.memory)
         no_room(device, bytes, what);
     try {
-        if (device.info.type == "cpu")
+        const bool in_place = flags & CL_MEM_USE_HOST_PTR;
+        if (shares_memory(device) && !in_place)
             return make_cpu_buffer(device, flags, bytes, data);
-        // COPY_HOST_PTR only reads the data, but OpenCL's signature is not const.
-        return cl::Buffer(device.handles->context, flags | (data ? CL_MEM_COPY_HOST_PTR : 0), bytes,
+        // The data is only read, but OpenCL's signature is not const.
+        return cl::Buffer(device.handles->context, flags | (data && !in_place ? CL_MEM_COPY_HOST_PTR : 0), bytes,
                           const_cast<void *>(data));
     } catch (const cl::Error &error) {
         if (error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE || error.err() == CL_OUT_OF_RESOURCES ||

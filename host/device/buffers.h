@@ -2,6 +2,7 @@
 // bytes wanted and available.
 #pragma once
 
+#include "base/large_vector.h"
 #include "device/opencl.h"
 
 #include <vector>
@@ -11,15 +12,27 @@ namespace opal {
 // Throws Error unless `bytes` in all (of several buffers) fit the device's memory. what: "the film and its samples".
 void check_room(const Device &device, unsigned long long bytes, const std::string &what);
 
-// One buffer of `bytes`, filled from `data` unless that is nullptr. flags: CL_MEM_READ_ONLY, CL_MEM_READ_WRITE, ...
+// Whether the device's memory is the host's.
+inline bool shares_memory(const Device &device) { return device.info.type == "cpu"; }
+
+// One buffer of `bytes`, filled from `data` unless that is nullptr. flags: CL_MEM_READ_ONLY, CL_MEM_READ_WRITE, ...;
+// with CL_MEM_USE_HOST_PTR the buffer is `data` itself.
 cl::Buffer make_buffer(const Device &device, cl_mem_flags flags, unsigned long long bytes, const void *data,
                        const std::string &what);
 
-// A read-only table. OpenCL has no empty buffers: an empty table gets room for one element, unwritten.
-template <class T> cl::Buffer make_table(const Device &device, const std::vector<T> &rows, const std::string &what) {
+// A read-only table, copied from a vector. OpenCL has no empty buffers: an empty table gets room for one element,
+// unwritten.
+template <class Rows> cl::Buffer make_table(const Device &device, const Rows &rows, const std::string &what) {
     const bool empty = rows.empty();
-    return make_buffer(device, CL_MEM_READ_ONLY, sizeof(T) * (empty ? 1 : rows.size()), empty ? nullptr : rows.data(),
-                       what);
+    return make_buffer(device, CL_MEM_READ_ONLY, sizeof(rows[0]) * (empty ? 1 : rows.size()),
+                       empty ? nullptr : rows.data(), what);
+}
+
+// The same, but a CPU device reads the vector's own memory: that must stay as it is for as long as the buffer is used.
+template <class T> cl::Buffer share_table(const Device &device, const LargeVector<T> &rows, const std::string &what) {
+    if (rows.empty() || !shares_memory(device))
+        return make_table(device, rows, what);
+    return make_buffer(device, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, sizeof(T) * rows.size(), rows.data(), what);
 }
 
 // Room for `count` elements that kernels write, all bytes 0 at first.

@@ -150,11 +150,9 @@ std::string program_text(const Features &features, const BuildOptions &options, 
     text += fmt::format("#define OPAL_AXIS_" #axis " {}\n", features.axes[AXIS_##axis]);
     OPAL_AXES(OPAL_AXIS_DEFINE)
 #undef OPAL_AXIS_DEFINE
-    const bool specialised =
-        features.axes[AXIS_integrator] >= 0; // the general kernel would take half a minute to compile
     const std::string loop = fmt::format("kernels/{}.cl", features.loop);
     const std::string body = sources.expand(options.kernels.empty() ? loop : options.kernels, options.lanes);
-    return specialised ? text + inline_all + body + inline_end : text + body;
+    return text + inline_all + body + inline_end;
 }
 
 } // namespace opal

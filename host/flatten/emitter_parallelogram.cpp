@@ -8,7 +8,7 @@ namespace opal {
 double flatten_parallelogram(const EmittingMesh &from, EmitterRecord &record, FlatScene &) {
     emitter_parallelogram_record &own = record.u.of_parallelogram;
     const auto &[o, u, v] = from.soup.corners[from.begin];
-    const std::vector<Point3f> &vertices = from.soup.vertices;
+    const auto &vertices = from.soup.vertices;
     for (int axis = 0; axis < 3; axis++) {
         own.origin[axis] = vertices[o][axis];
         own.u[axis] = vertices[u][axis] - vertices[o][axis];

@@ -2,6 +2,7 @@
 
 #include "base/math.h"
 #include "bvh/box.h"
+#include "bvh/collapse.h"
 #include "flatten/geometry.h"
 
 #include <algorithm>
@@ -19,26 +20,21 @@ Box box_of(const TriangleSoup &soup, uint id) {
     return box;
 }
 
-// The soup with some of the triangles only, numbered by their place in `ids`.
-TriangleSoup subset_of(const TriangleSoup &soup, const std::vector<uint> &ids) {
-    TriangleSoup part{soup.vertices, {}, soup.others};
-    for (uint id : ids)
-        part.corners.push_back(soup.corners[id]);
-    return part;
-}
+std::size_t blocks_for(std::size_t primitives) { return (primitives + OPAL_WIDTH - 1) / OPAL_WIDTH; }
 
-// Replaces each id i in the blocks of a subset by ids[i], the triangle's id in the scene.
-void map_ids(std::vector<TriangleBlock> &blocks, const std::vector<uint> &ids) {
-    for (TriangleBlock &block : blocks)
-        for (uint &id : block.id)
-            id = id == OPAL_NONE ? OPAL_NONE : ids[id];
+// As many ids from place `first` on as a block has.
+BlockIds part_of(const std::vector<uint> &ids, std::size_t first) {
+    BlockIds part;
+    part.fill(OPAL_NONE);
+    std::copy_n(&ids[first], std::min(part.size(), ids.size() - first), part.begin());
+    return part;
 }
 
 // Puts primitives together as the tree's leaves ask. `single` holds each primitive of a shape, in the first place of a
 // block of its own. A block's rows have OPAL_WIDTH words; unused places repeat the first primitive, but have no id.
 template <class Block>
-std::vector<Block> fill_blocks(const std::vector<Block> &single, const std::vector<BlockIds> &leaves) {
-    std::vector<Block> filled(leaves.size());
+LargeVector<Block> fill_blocks(const LargeVector<Block> &single, const LargeVector<BlockIds> &leaves) {
+    LargeVector<Block> filled(leaves.size());
     for (std::size_t i = 0; i < leaves.size(); i++) {
         for (int place = 0; place < OPAL_WIDTH; place++) {
             const uint id = leaves[i][leaves[i][place] == OPAL_NONE ? 0 : place];
@@ -85,7 +81,7 @@ template <class Corners> void rotate_corners(Corners &corners, int by) {
 
 // Returns the face of both triangles if they make a quadrilateral, and rotates their corners to A B C and D C B; else
 // the face of the first triangle alone.
-Face make_face(uint first, uint second, TriangleSoup &soup, std::vector<Triangle> &triangles) {
+Face make_face(uint first, uint second, TriangleSoup &soup, LargeVector<Triangle> &triangles) {
     const auto corner = [&](uint id, int i) { return soup.vertices[soup.corners[id][size_t(i % 3)]]; };
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
@@ -188,7 +184,7 @@ std::vector<uint> choose_face_list(const TriangleSoup &soup) {
     return chosen;
 }
 
-std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, std::vector<Triangle> &triangles) {
+std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, LargeVector<Triangle> &triangles) {
     std::vector<Face> faces;
     std::vector<uint> left = ids;
     while (!left.empty()) {
@@ -205,24 +201,27 @@ std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, std:
 }
 
 void build_tree(const TriangleSoup &soup, const std::vector<Face> &faces, FlatScene &scene) {
-    std::vector<char> in_list(soup.corners.size());
-    for (const Face &face : faces)
-        for (uint id : {face.first, face.second})
-            if (id != OPAL_NONE)
-                in_list[id] = 1;
-    std::vector<uint> others;
-    for (uint id = 0; id < soup.corners.size(); id++)
-        if (!in_list[id])
-            others.push_back(id);
-    Bvh bvh = faces.empty() ? build_bvh(soup) : build_bvh(subset_of(soup, others));
-    if (!faces.empty())
-        map_ids(bvh.blocks, others);
+    std::vector<uint> listed;
+    for (const Face &face : faces) {
+        listed.push_back(face.first);
+        if (face.second != OPAL_NONE)
+            listed.push_back(face.second);
+    }
+    std::sort(listed.begin(), listed.end());
+    if (!listed.empty() && listed.size() == soup.corners.size() && soup.others.empty()) {
+        scene.nodes = {empty_node()};
+        return;
+    }
+    Bvh bvh = build_bvh(soup, listed);
     scene.sah_cost = sah_cost(bvh);
     scene.nodes = std::move(bvh.nodes);
-    scene.triangle_blocks = std::move(bvh.blocks);
+    // With room for those of the face list.
+    scene.triangle_blocks.reserve(bvh.leaves[SHAPE_triangle].size() + blocks_for(2 * faces.size()));
+    for (const BlockIds &ids : bvh.leaves[SHAPE_triangle])
+        scene.triangle_blocks.push_back(pack_block(soup, ids));
 #define OPAL_FILL_BLOCKS(name, Block)                                                                                  \
     if (SHAPE_##name != SHAPE_triangle)                                                                                \
-        scene.name##_blocks = fill_blocks(scene.name##_blocks, bvh.other_blocks[SHAPE_##name]);
+        scene.name##_blocks = fill_blocks(scene.name##_blocks, bvh.leaves[SHAPE_##name]);
     OPAL_SHAPES(OPAL_FILL_BLOCKS)
 #undef OPAL_FILL_BLOCKS
 }
@@ -253,10 +252,10 @@ void list_faces(const TriangleSoup &soup, std::vector<Face> faces, const std::op
         if (scene.faces.size() == size_t(idle - faces.begin()))
             scene.settings.face_list_to_light = scene.settings.face_list;
     }
-    if (!faces.empty()) {
-        std::vector<TriangleBlock> blocks = pack_blocks(subset_of(soup, shapes));
-        map_ids(blocks, ids);
-        scene.triangle_blocks.insert(scene.triangle_blocks.end(), blocks.begin(), blocks.end());
+    for (std::size_t first = 0; first < ids.size(); first += OPAL_WIDTH) {
+        TriangleBlock block = pack_block(soup, part_of(shapes, first));
+        std::ranges::copy(part_of(ids, first), block.id);
+        scene.triangle_blocks.push_back(block);
     }
     scene.face_vertices.resize(3 * vertices.size());
     for (const auto &[position, place] : vertices)

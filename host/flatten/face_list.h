@@ -23,10 +23,10 @@ struct Face {
 
 // Pairs the triangles `ids` into quadrilaterals where possible. Rotates the corners of each pair, in `soup` and in
 // `triangles`, so that they begin at A and at D.
-std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, std::vector<Triangle> &triangles);
+std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, LargeVector<Triangle> &triangles);
 
 // Builds the tree over the primitives that are in no face of `faces`: fills scene.nodes, scene.sah_cost and the shapes'
-// blocks.
+// blocks. Where all are in faces, the tree is a root without children, and there are no blocks.
 void build_tree(const TriangleSoup &soup, const std::vector<Face> &faces, FlatScene &scene);
 
 // Appends the blocks of the face list to scene.triangle_blocks and fills their tables. Faces that no ray from a point

@@ -165,6 +165,16 @@ int find_hemisphere(const SceneDescription &description, const FlatScene &scene,
     return cosine ? CHOICE_hemisphere_cosine : CHOICE_hemisphere_uniform;
 }
 
+// Chooses the axis `emitter_choice`: emitters of one power are chosen alike. Sets `reason` in that case.
+int find_emitter_choice(const SceneDescription &description, const FlatScene &scene, std::string &reason) {
+    const int chosen = description.strategy[AXIS_emitter_choice];
+    const auto is_alike = [](const EmitterRecord &emitter) { return emitter.accept == 1; };
+    if (chosen == CHOICE_emitter_choice_uniform || !std::ranges::all_of(scene.emitters, is_alike))
+        return chosen;
+    reason = scene.emitters.size() < 2 ? "there is nothing to choose from" : "all emitters have the same power";
+    return CHOICE_emitter_choice_uniform;
+}
+
 // The parameters of each kind of BSDF that have a texture on some mesh; all where it is decided at run time.
 std::array<uint, BSDF_COUNT> find_textured(const FlatScene &scene, bool specialise) {
     std::array<uint, BSDF_COUNT> textured{};
@@ -180,6 +190,14 @@ std::array<uint, BSDF_COUNT> find_textured(const FlatScene &scene, bool speciali
             }
         });
     return textured;
+}
+
+// Does a program for all scenes have the feature? Where no scene of that width has it, or where it costs most scenes
+// more than it saves a few, it has not: prefetching a tree that fits into the caches takes 5 to 10 % of its time.
+bool general_has(unsigned feature, int lanes) {
+    if (feature == FEATURE_face_list)
+        return lanes >= FACE_LIST_LANES;
+    return feature != FEATURE_large_tree;
 }
 
 } // namespace
@@ -204,14 +222,17 @@ Features find_features(const SceneDescription &description, const FlatScene &sce
     Features features;
     const bool specialise = description.strategy.specialise;
     for (unsigned i = 0; i < FEATURE_COUNT; i++)
-        features.list[i] =
-            specialise ? Feature{decisions[i].on, decisions[i].reason} : Feature{true, "--specialise off"};
+        features.list[i] = specialise ? Feature{decisions[i].on, decisions[i].reason}
+                                      : Feature{general_has(i, lanes), "--specialise off"};
     for (int axis = 0; axis < AXIS_COUNT; axis++) {
         features.axes[axis] = specialise ? description.strategy[axis] : -1;
         features.axis_reasons[axis] = specialise ? "chosen" : "--specialise off: decided at run time";
     }
-    if (specialise)
+    if (specialise) {
         features.axes[AXIS_hemisphere] = find_hemisphere(description, scene, features.axis_reasons[AXIS_hemisphere]);
+        features.axes[AXIS_emitter_choice] =
+            find_emitter_choice(description, scene, features.axis_reasons[AXIS_emitter_choice]);
+    }
     features.loop = integrator_of(description.strategy).loop;
     features.textured = find_textured(scene, specialise);
     return features;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/crop.h"
+#include "base/large_vector.h"
 #include "base/math.h"
 #include "emitters/list.h"
 #include "kernels/features.h"
@@ -39,7 +40,7 @@ struct FlatScene {
 
     Settings settings{};
     Crop crop; // what is shown of the image: settings.film less what the filter needs around it
-#define OPAL_TABLE_ROWS(record, name, shown) std::vector<record> name;
+#define OPAL_TABLE_ROWS(record, name, shown) LargeVector<record> name;
     OPAL_TABLES(OPAL_TABLE_ROWS)
 #undef OPAL_TABLE_ROWS
     uint face_list_triangles = 0; // that `faces` stand for
@@ -66,5 +67,8 @@ inline bool is_wide_filter(const Settings &settings) {
 
 // lanes: the width that the kernel will have; decides whether triangles are listed beside the tree.
 FlatScene flatten(const SceneDescription &scene, int lanes);
+
+// The same of a scene that is flattened once: each triangle mesh is freed as soon as it is gathered, and left empty.
+FlatScene flatten_and_free(SceneDescription &scene, int lanes);
 
 } // namespace opal

@@ -59,7 +59,7 @@ std::vector<uint> words_with_hemisphere(const Bsdf &bsdf, int hemisphere) {
 
 class BsdfGatherer {
 public:
-    BsdfGatherer(int hemisphere, std::vector<uint> &table) : hemisphere_(hemisphere), table_(table) {}
+    BsdfGatherer(int hemisphere, LargeVector<uint> &table) : hemisphere_(hemisphere), table_(table) {}
 
     // Returns the first word of the record. BSDFs come after those that they lead to.
     uint add(const Bsdf &bsdf) {
@@ -76,7 +76,7 @@ public:
 
 private:
     int hemisphere_;
-    std::vector<uint> &table_;
+    LargeVector<uint> &table_;
     std::map<std::vector<uint>, uint> known_; // first word of each record
 };
 
@@ -93,7 +93,7 @@ void gather_bsdfs(const SceneDescription &description, FlatScene &scene) {
 // Corners of the boxes of lights, of emitting triangles, and those of the boxes of other primitives that emit: every
 // shadow ray ends at one of these points or in their convex hull. Nothing: there are lights that are infinitely far.
 std::optional<std::vector<Point3f>> light_points(const SceneDescription &description, const Flattening &flattening,
-                                                 const TriangleSoup &soup, const std::vector<Triangle> &triangles) {
+                                                 const TriangleSoup &soup, const LargeVector<Triangle> &triangles) {
     std::vector<Point3f> points;
     for (const Light &light : description.lights) {
         if (is_infinite(light.kind()) && !is_black(light))
@@ -115,7 +115,7 @@ std::optional<std::vector<Point3f>> light_points(const SceneDescription &descrip
 }
 
 void build_acceleration(TriangleSoup &soup, const std::optional<std::vector<Point3f>> &lights, bool with_face_list,
-                        FlatScene &scene) {
+                        bool always_tree, FlatScene &scene) {
     const auto start = std::chrono::steady_clock::now();
     const std::vector<uint> ids = choose_face_list(soup);
     // Triangles are paired at every width: pairing renumbers corners, and sampled points of lights depend on their
@@ -123,10 +123,29 @@ void build_acceleration(TriangleSoup &soup, const std::optional<std::vector<Poin
     std::vector<Face> faces = pair_up(ids, soup, scene.triangles);
     if (!with_face_list)
         faces.clear();
-    if (faces.empty() || ids.size() < soup.corners.size() || !soup.others.empty())
+    if (always_tree || faces.empty() || ids.size() < soup.corners.size() || !soup.others.empty())
         build_tree(soup, faces, scene);
     list_faces(soup, std::move(faces), lights, scene);
     scene.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+FlatScene flatten(const SceneDescription &description, int lanes, const std::function<void(uint)> &on_gathered) {
+    FlatScene scene;
+    const Extent extent = extent_of(description);
+    const Flattening flattening = find_flattening(extent);
+    scene.center = flattening.center;
+    scene.scale = flattening.scale;
+    scene.cameras.push_back(flatten_camera(description.camera, flattening));
+    scene.crop = description.camera.window();
+    fill_film(description.camera, scene.settings);
+    fill_strategy(description, flattening, scene.settings);
+    gather_bsdfs(description, scene);
+    TriangleSoup soup = gather_primitives(description, flattening, scene, on_gathered);
+    build_acceleration(soup, light_points(description, flattening, soup, scene.triangles), lanes >= FACE_LIST_LANES,
+                       !description.strategy.specialise, scene);
+    gather_emitters(description, flattening, extent.radius(), soup, scene);
+    scene.features = find_features(description, scene, lanes);
+    return scene;
 }
 
 } // namespace
@@ -139,22 +158,15 @@ std::size_t FlatScene::tree_bytes() const {
     return bytes;
 }
 
-FlatScene flatten(const SceneDescription &description, int lanes) {
-    FlatScene scene;
-    const Flattening flattening = find_flattening(description);
-    scene.center = flattening.center;
-    scene.scale = flattening.scale;
-    scene.cameras.push_back(flatten_camera(description.camera, flattening));
-    scene.crop = description.camera.window();
-    fill_film(description.camera, scene.settings);
-    fill_strategy(description, flattening, scene.settings);
-    gather_bsdfs(description, scene);
-    TriangleSoup soup = gather_primitives(description, flattening, scene);
-    build_acceleration(soup, light_points(description, flattening, soup, scene.triangles),
-                       lanes >= FACE_LIST_LANES && description.strategy.specialise, scene);
-    gather_emitters(description, flattening, soup, scene);
-    scene.features = find_features(description, scene, lanes);
-    return scene;
+FlatScene flatten(const SceneDescription &scene, int lanes) {
+    return flatten(scene, lanes, [](uint) {});
+}
+
+FlatScene flatten_and_free(SceneDescription &scene, int lanes) {
+    return flatten(scene, lanes, [&](uint i) {
+        if (auto *mesh = std::get_if<TriangleMesh>(&scene.meshes[i].shape))
+            *mesh = {};
+    });
 }
 
 } // namespace opal

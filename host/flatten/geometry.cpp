@@ -107,8 +107,7 @@ Point3f Flattening::operator()(Vec3 world) const {
     return {float(p.x), float(p.y), float(p.z)};
 }
 
-Flattening find_flattening(const SceneDescription &scene) {
-    const Extent extent = extent_of(scene);
+Flattening find_flattening(const Extent &extent) {
     if (extent.empty())
         return {};
     const Vec3 center = extent.middle();
@@ -119,19 +118,24 @@ Flattening find_flattening(const SceneDescription &scene) {
     return {center, std::ldexp(1.0, m == 0.5 ? 1 - exponent : -exponent)};
 }
 
-TriangleSoup gather_primitives(const SceneDescription &description, const Flattening &flattening, FlatScene &scene) {
+TriangleSoup gather_primitives(const SceneDescription &description, const Flattening &flattening, FlatScene &scene,
+                               const std::function<void(uint)> &on_gathered) {
     PrimitiveGatherer gatherer(flattening, scene);
-    std::size_t vertices = 0, triangles = 0;
+    std::size_t vertices = 0, normals = 0, triangles = 0;
     for (const Mesh &mesh : description.meshes)
         if (const auto *shape = std::get_if<TriangleMesh>(&mesh.shape)) {
             vertices += shape->positions.size();
+            normals += shape->normals.size();
             triangles += shape->triangles.size();
         }
     gatherer.soup.vertices.reserve(vertices);
     gatherer.soup.corners.reserve(triangles);
+    scene.normals.reserve(3 * normals);
     scene.triangles.reserve(triangles);
-    for (uint mesh = 0; mesh < description.meshes.size(); mesh++)
+    for (uint mesh = 0; mesh < description.meshes.size(); mesh++) {
         gatherer.add(description.meshes[mesh], mesh);
+        on_gathered(mesh);
+    }
     if (gatherer.dropped > 0) {
         const Mesh &first = description.meshes[gatherer.first_dropped];
         warn(fmt::format("{}{} of {} triangles dropped: no area is left of them in single precision, which rounds "

@@ -5,6 +5,8 @@
 #include "bvh/bvh.h"
 #include "flatten/flat_scene.h"
 
+#include <functional>
+
 namespace opal {
 
 Extent extent_of(const Mesh &mesh);
@@ -20,11 +22,12 @@ struct Flattening {
 
 // Maps the centre of the scene's extent to the origin and half of its longest side into (0.5, 1]. An empty scene and a
 // scene of one point have scale 1.
-Flattening find_flattening(const SceneDescription &scene);
+Flattening find_flattening(const Extent &extent);
 
 // Fills scene.triangles and scene.normals, and of other shapes NAME_blocks with a block for each primitive, and returns
 // what the tree is built over. A triangle whose normal is lost in the rounding to float is dropped; one warning counts
-// all of them.
-TriangleSoup gather_primitives(const SceneDescription &description, const Flattening &flattening, FlatScene &scene);
+// all of them. on_gathered(i) is called once mesh i is needed no longer.
+TriangleSoup gather_primitives(const SceneDescription &description, const Flattening &flattening, FlatScene &scene,
+                               const std::function<void(uint)> &on_gathered);
 
 } // namespace opal

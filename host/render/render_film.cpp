@@ -10,14 +10,14 @@
 
 namespace opal {
 
-RenderedFilm render_film(const Device &device, const FlatScene &scene, const RenderOptions &options,
-                         const StopRule &rule, unsigned seed, unsigned spp) {
+RenderedFilm render_film(const Device &device, FlatScene scene, const RenderOptions &options, const StopRule &rule,
+                         unsigned seed, unsigned spp) {
     constexpr unsigned most_samples = 1u << 31;
-    Renderer renderer(device, scene, options);
+    const double pixels = double(scene.settings.film.width) * scene.settings.film.height;
+    Renderer renderer(device, std::move(scene), options);
     renderer.restart(seed);
     watch_interrupts();
     const unsigned most = spp ? spp : most_samples;
-    const double pixels = double(scene.settings.film.width) * scene.settings.film.height;
     const double start = seconds_since_start();
     RenderedFilm rendered;
     {

@@ -13,7 +13,7 @@ struct RenderedFilm {
 
 // Compiles and renders until the rule is met, `spp` samples a pixel are there, or Ctrl-C stops it (see
 // base/signals.h). Shows a bar of the progress where the end is known. spp 0: the rule alone decides.
-RenderedFilm render_film(const Device &device, const FlatScene &scene, const RenderOptions &options,
-                         const StopRule &rule, unsigned seed, unsigned spp);
+RenderedFilm render_film(const Device &device, FlatScene scene, const RenderOptions &options, const StopRule &rule,
+                         unsigned seed, unsigned spp);
 
 } // namespace opal

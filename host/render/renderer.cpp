@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <numbers>
@@ -67,6 +68,7 @@ struct Renderer::FilmBand {
 };
 
 struct Renderer::OnDevice {
+    FlatScene tables; // that the buffers of `scene` may share
     std::vector<cl::Buffer> scene;
     cl::Buffer samples, invalid;
     std::vector<FilmBand> bands;
@@ -86,7 +88,7 @@ Renderer::LaunchShape Renderer::launch_shape() const {
     return s;
 }
 
-Renderer::Renderer(const Device &device, const FlatScene &scene, const RenderOptions &options)
+Renderer::Renderer(const Device &device, FlatScene scene, const RenderOptions &options)
     : device_(device), settings_(scene.settings), crop_(scene.crop), options_(options),
       pixels_(size_t(scene.settings.film.width) * scene.settings.film.height),
       wide_filter_(is_wide_filter(scene.settings)), on_device_(std::make_unique<OnDevice>()) {
@@ -107,7 +109,10 @@ Renderer::Renderer(const Device &device, const FlatScene &scene, const RenderOpt
     const cl::Program program = build_program(device, program_text(scene.features, options.build, *options.sources),
                                               options.build, &compile_seconds_);
     const cl::Program film_program = build_film_program(device, options.build, *options.sources, &film_seconds);
-    on_device_->scene = upload_scene(device, scene);
+    on_device_->tables = std::move(scene);
+    on_device_->scene = upload_scene(device, on_device_->tables);
+    if (!shares_memory(device))
+        on_device_->tables = {};
     on_device_->samples =
         make_buffer(device, CL_MEM_READ_WRITE, pixels_ * sample_bytes * buffer_spp_, nullptr, "the samples of a pass");
     on_device_->invalid = make_zeros<cl_uint>(device, 1 + 2 * OPAL_INVALID_RECORDS, "the list of invalid samples");
@@ -128,7 +133,17 @@ Renderer::Renderer(const Device &device, const FlatScene &scene, const RenderOpt
         cl_uint argument = 0;
         for (const cl::Buffer &buffer : on_device_->scene)
             on_device_->render.setArg(argument++, buffer);
-        on_device_->render.setArg(argument, on_device_->samples);
+        return 0;
+    });
+    set_film_arguments();
+    compile_seconds_ += film_seconds + warm_up();
+}
+
+Renderer::~Renderer() = default;
+
+void Renderer::set_film_arguments() {
+    with_device(device_.info, [&] {
+        on_device_->render.setArg(cl_uint(on_device_->scene.size()), on_device_->samples);
         for (cl::Kernel *kernel : {&on_device_->clear, &on_device_->gather, &on_device_->gather_around}) {
             kernel->setArg(0, on_device_->scene[0]);
             kernel->setArg(1, on_device_->samples);
@@ -136,10 +151,15 @@ Renderer::Renderer(const Device &device, const FlatScene &scene, const RenderOpt
         on_device_->gather.setArg(9, on_device_->invalid);
         return 0;
     });
-    compile_seconds_ += film_seconds + warm_up();
 }
 
-Renderer::~Renderer() = default;
+void Renderer::share_film(const Renderer &other) {
+    assert(pixels_ == other.pixels_ && buffer_spp_ == other.buffer_spp_);
+    on_device_->samples = other.on_device_->samples;
+    on_device_->bands = other.on_device_->bands;
+    on_device_->invalid = other.on_device_->invalid;
+    set_film_arguments();
+}
 
 // Launches the render kernel without any sample to render, because drivers finish compiling at a kernel's first launch
 // of a shape. Returns the seconds, which count as compile time.

@@ -32,8 +32,8 @@ cl::Program build_film_program(const Device &device, const BuildOptions &options
 class Renderer {
 public:
     // Compiles the program and uploads the scene. Throws Error if the program does not build or memory does not
-    // suffice.
-    Renderer(const Device &device, const FlatScene &scene, const RenderOptions &options);
+    // suffice. A scene that is moved in is not copied by devices that share the host's memory.
+    Renderer(const Device &device, FlatScene scene, const RenderOptions &options);
     ~Renderer();
 
     // A callback after each launch, with the samples of each pixel so far (a fraction within a pass) and the kernel
@@ -44,6 +44,14 @@ public:
     // launches of the last pass are added, too, so that pixels differ in their sample counts and may have none after
     // the first pass. Pixels with more samples lie evenly over the image.
     bool render(unsigned end, const OnLaunch &on_launch = {});
+
+    // The samples of a pixel in the renders from the next restart on: the strata of --sampler stratified. At first the
+    // scene's spp.
+    void plan_samples(unsigned spp) { settings_.spp = spp; }
+
+    // Frees the film and takes the memory of the film of `other`, whose image has the same size and filter. From then
+    // on each of both must restart before it renders, and its film be read before the other restarts.
+    void share_film(const Renderer &other);
 
     // Empties the film. The next sample has the index `first_sample` and the random numbers of `seed`.
     void restart(unsigned seed, unsigned first_sample = 0);
@@ -66,6 +74,7 @@ private:
         unsigned tiles, chunks; // of the image, and of a tile's samples
     };
     LaunchShape launch_shape() const;
+    void set_film_arguments();
     double warm_up();
     bool render_pass(unsigned samples, const OnLaunch &on_launch);
     void set_pass_arguments(cl::Kernel &kernel, unsigned first_argument, unsigned chunk_samples, unsigned pass_samples);

@@ -100,7 +100,7 @@ const std::vector<StrategyOption> numbers = {
 
 StrategyOption option_of_axis(int axis) {
     const Axis &row = axes()[axis];
-    std::string help = row.help + " [the scene's]";
+    std::string help = fmt::format("{} [the scene's, else {}]", row.help, row.choices[0].name);
     for (const Choice &choice : row.choices)
         help += fmt::format("\n  {}: {}", choice.name, choice.help);
     return {row.name,

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace opal {
 
 namespace {
@@ -25,7 +27,7 @@ const std::vector<PresetRow> preset_rows = {
     {"lighting=mis,mis=one-sample", "MIS, one sample", false},
     {"lighting=mis,mis=balance", "MIS, balance heuristic", false},
     {"lighting=mis,mis=power", "MIS, power heuristic", false},
-    {"lighting=mis,mis=power,emitter-choice=power", "MIS, power; emitters by power", true},
+    {"lighting=mis,mis=power,emitter-choice=uniform", "MIS, power; emitters alike", true},
     {"lighting=mis,mis=power,sampler=stratified", "MIS, power; stratified", true},
     {"lighting=mis,mis=power,sampler=sobol", "MIS, power; Sobol", true},
     {"lighting=mis,mis=power,rr=throughput", "MIS, power; roulette by throughput", true},
@@ -62,7 +64,7 @@ public:
         const bool misses_lights = light_missed_by_bsdfs(scene_) != nullptr;
         for (const PresetRow &row : preset_rows)
             if (is_for(row, integrator) && (every || !row.only_all) &&
-                !(misses_lights && row.name.starts_with("lighting=bsdf")))
+                !(misses_lights && row.name.starts_with("lighting=bsdf")) && !(row.only_all && repeats(row)))
                 add(row.name, row.label);
     }
 
@@ -70,6 +72,12 @@ public:
 
 private:
     const SceneDescription &scene_;
+
+    // Whether the scene has the row's choice already, so that an earlier row is the same.
+    bool repeats(const PresetRow &row) const {
+        const Strategy strategy = named_strategy(scene_, row.name).strategy;
+        return std::ranges::any_of(all, [&](const Candidate &c) { return is_same(c.scene.strategy, strategy); });
+    }
 };
 
 void check_one_image(const std::vector<Candidate> &all) {

@@ -10,35 +10,21 @@ namespace opal {
 
 CompiledStrategy::CompiledStrategy(const Device &device, const Candidate &candidate, const Sources &sources,
                                    Clock clock)
-    : device_(device), candidate_(candidate), sources_(sources), clock_(clock) {
-    compile(candidate.scene.spp);
-}
-
-int CompiledStrategy::lanes() const {
-    const Strategy &s = candidate_.scene.strategy;
-    return lanes_for(device_.info, s.lanes, s.math);
-}
-
-void CompiledStrategy::compile(unsigned spp) {
-    SceneDescription scene = candidate_.scene;
-    scene.spp = compiled_spp_ = spp;
-    renderer_.reset();
-    flat_ = std::make_unique<FlatScene>(flatten(scene, lanes()));
+    : strategy_(candidate.scene.strategy), clock_(clock), cores_(std::max(1u, device.info.compute_units)),
+      lanes_(lanes_for(device.info, strategy_.lanes, strategy_.math)) {
     RenderOptions options;
-    options.build = {.lanes = lanes(), .math = scene.strategy.math, .kernels = "kernels/render.cl"};
-    options.sources = &sources_;
-    renderer_ = std::make_unique<Renderer>(device_, *flat_, options);
+    options.build = {.lanes = lanes_, .math = strategy_.math, .kernels = "kernels/render.cl"};
+    options.sources = &sources;
+    renderer_ = std::make_unique<Renderer>(device, flatten(candidate.scene, lanes_), options);
 }
 
 CompiledStrategy::RenderResult CompiledStrategy::render(unsigned spp, unsigned seed, unsigned first) {
-    if (candidate_.scene.strategy[AXIS_sampler] == CHOICE_sampler_stratified && spp != compiled_spp_)
-        compile(spp);
+    renderer_->plan_samples(spp);
     renderer_->restart(seed, first);
     const std::clock_t before = std::clock();
     if (!renderer_->render(first + spp, [](double, double) { return !interrupted(); }))
         throw Interrupted{};
-    const double cpu_seconds =
-        double(std::clock() - before) / CLOCKS_PER_SEC / std::max(1u, device_.info.compute_units);
+    const double cpu_seconds = double(std::clock() - before) / CLOCKS_PER_SEC / cores_;
     RenderResult rendered{renderer_->film(), {}, clock_ == Clock::cpu ? cpu_seconds : renderer_->kernel_seconds()};
     rendered.image = image_of(rendered.film, false);
     return rendered;

@@ -14,11 +14,14 @@ namespace opal {
 // one.
 enum class Clock { kernel, cpu };
 
-// One strategy, compiled for a device.
+// One strategy, compiled for a device: it renders any number of samples.
 class CompiledStrategy {
 public:
     CompiledStrategy(const Device &device, const Candidate &candidate, const Sources &sources,
                      Clock clock = Clock::kernel);
+
+    // Shares the memory of the film with a strategy of the same image, as only one renders at a time.
+    void share_film(const CompiledStrategy &other) { renderer_->share_film(*other.renderer_); }
 
     struct RenderResult {
         Film film;
@@ -29,17 +32,14 @@ public:
     RenderResult render(unsigned spp, unsigned seed, unsigned first = 0);
 
     double compile_seconds() const { return renderer_->compile_seconds(); }
-    int lanes() const;
-    bool uses_mis() const { return candidate_.scene.strategy[AXIS_lighting] == CHOICE_lighting_mis; }
+    int lanes() const { return lanes_; }
+    bool uses_mis() const { return strategy_[AXIS_lighting] == CHOICE_lighting_mis; }
 
 private:
-    void compile(unsigned spp);
-    const Device &device_;
-    const Candidate &candidate_;
-    const Sources &sources_;
+    Strategy strategy_;
     Clock clock_;
-    unsigned compiled_spp_ = 0; // for the stratified sampler, whose strata depend on the number of samples
-    std::unique_ptr<FlatScene> flat_;
+    double cores_; // compute units of the device
+    int lanes_;
     std::unique_ptr<Renderer> renderer_;
 };
 

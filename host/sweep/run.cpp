@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/progress.h"
+#include "strategies/combinations.h"
 #include "sweep/reference.h"
 
 #include <fmt/format.h>
@@ -29,12 +30,14 @@ public:
                 SweepRecord &record)
         : plan_(plan), device_(device), candidates_(candidates), record_(record), compiled_(candidates.size()) {}
 
-    void measure() {
+    size_t renderers_made() const { return renderers_made_; }
+
+    void measure_points() {
         progress_.emplace("pilots");
         run_pilots();
-        best_ = &*std::min_element(candidates_.begin(), candidates_.end(), [&](const Candidate &a, const Candidate &b) {
-            return record_of(a).pilot_cost < record_of(b).pilot_cost;
-        });
+        best_ = size_t(
+            std::ranges::min_element(candidates_, {}, [&](const Candidate &c) { return record_of(c).pilot_cost; }) -
+            candidates_.begin());
         fit_budget();
         progress_.emplace("sweep");
         expect();
@@ -46,17 +49,38 @@ public:
 
     void render_equal_time_images() {
         progress_.emplace("images");
-        read_reference();
+        if (reference_.layers.empty())
+            read_reference();
         for (size_t i = 0; i < candidates_.size(); i++) {
-            render_equal_time_image(candidates_[i]);
+            render_equal_time_image(i);
+            compiled_[i].reset();
             progress_->update(double(i + 1), double(candidates_.size()));
         }
     }
 
 private:
     StrategyRecord &record_of(const Candidate &c) { return record_.strategy(c.name, c.label); }
+    const StrategyRecord &best() { return record_of(candidates_[best_]); }
     void save_record() { save(record_, plan_.folder); }
-    CompiledStrategy compile(const Candidate &c) { return CompiledStrategy(device_, c, *plan_.sources, plan_.clock); }
+    CompiledStrategy compile(const Candidate &c) {
+        progress_->tell("compile " + c.label);
+        renderers_made_++;
+        return CompiledStrategy(device_, c, *plan_.sources, plan_.clock);
+    }
+    // The candidate's compiled strategy, which the first use compiles. It is kept up to the candidate's image at equal
+    // time. All share the memory of one film.
+    CompiledStrategy &compiled(size_t candidate) {
+        const Candidate &c = candidates_[candidate];
+        if (!compiled_[candidate]) {
+            compiled_[candidate] = std::make_unique<CompiledStrategy>(compile(c));
+            const auto other =
+                std::ranges::find_if(compiled_, [&](const auto &one) { return one && one != compiled_[candidate]; });
+            if (other != compiled_.end())
+                compiled_[candidate]->share_film(**other);
+        }
+        progress_->tell(c.label);
+        return *compiled_[candidate];
+    }
     // The part of the budget for this device.
     double device_budget() const { return record_.budget / double(record_.devices.size()); }
 
@@ -67,22 +91,20 @@ private:
         const double share =
             record_.budget > 0 ? pilots_share * device_budget() / double(candidates_.size()) : max_pilot_seconds;
         std::vector<Pilot> all;
-        for (const Candidate &c : candidates_) {
-            StrategyRecord &s = record_of(c);
-            CompiledStrategy strategy = compile(c);
+        for (size_t i = 0; i < candidates_.size(); i++) {
+            StrategyRecord &s = record_of(candidates_[i]);
+            CompiledStrategy &strategy = compiled(i);
             all.push_back(run_pilot(strategy, plan_.seed, std::fmin(max_pilot_seconds, share)));
             progress_->update(double(all.size()), double(candidates_.size()));
-            s.independent = c.scene.strategy[AXIS_sampler] == CHOICE_sampler_independent;
+            s.independent = candidates_[i].scene.strategy[AXIS_sampler] == CHOICE_sampler_independent;
             s.compile_seconds = strategy.compile_seconds();
             s.lanes = strategy.lanes();
             s.pilot_seconds_a_sample = all.back().seconds_a_sample;
-        }
-        const std::vector<double> costs = pilot_costs(all);
-        for (size_t i = 0; i < costs.size(); i++) {
-            StrategyRecord &s = record_of(candidates_[i]);
-            s.pilot_cost = std::fmax(costs[i], 1e-30); // 0 means that there is no pilot yet
             info(fmt::format("pilot   {}: {:.3g} ms a sample of each pixel", s.label, 1e3 * s.pilot_seconds_a_sample));
         }
+        const std::vector<double> costs = pilot_costs(all);
+        for (size_t i = 0; i < costs.size(); i++)
+            record_of(candidates_[i]).pilot_cost = std::fmax(costs[i], 1e-30); // 0 means that there is no pilot yet
         save_record();
     }
 
@@ -104,9 +126,8 @@ private:
 
     // The seconds that the missing measurements will take, by the pilots.
     double seconds_left() {
-        double seconds = record_.reference.made_by.empty() && !plan_.reference
-                             ? reference_spp() * record_of(*best_).pilot_seconds_a_sample
-                             : 0;
+        double seconds =
+            record_.reference.made_by.empty() && !plan_.reference ? reference_spp() * best().pilot_seconds_a_sample : 0;
         for (const Candidate &c : candidates_)
             for (unsigned spp : record_.spp)
                 seconds += missing_replicates(record_of(c), spp) * double(spp) * record_of(c).pilot_seconds_a_sample;
@@ -119,7 +140,7 @@ private:
         double compiling = 0, fastest = INFINITY;
         for (size_t i = 0; i < candidates_.size(); i++) {
             const StrategyRecord &s = record_of(candidates_[i]);
-            compiling += compiled_[i] ? compiled_[i]->compile_seconds() : 2 * s.compile_seconds;
+            compiling += compiled_[i] ? 0 : s.compile_seconds;
             fastest = std::fmin(fastest, s.pilot_seconds_a_sample);
         }
         const double images = double(candidates_.size()) * record_.spp.back() * fastest;
@@ -157,6 +178,20 @@ private:
 
     void read_reference() { reference_ = plan_.reference ? *plan_.reference : read_exr(reference_file()); }
 
+    // The strategy that renders the reference: the best, with independent samples, and without fast math, which is
+    // itself measured against the reference. It is compiled into `own` unless it is a candidate.
+    CompiledStrategy &reference_strategy(std::optional<CompiledStrategy> &own) {
+        Candidate wanted = candidates_[best_];
+        wanted.scene.strategy[AXIS_sampler] = CHOICE_sampler_independent;
+        if (wanted.scene.strategy.math == MathMode::fast)
+            wanted.scene.strategy.math = MathMode::precise;
+        for (size_t i = 0; i < candidates_.size(); i++)
+            if (is_same(candidates_[i].scene.strategy, wanted.scene.strategy))
+                return compiled(i);
+        wanted.label = "the reference";
+        return own.emplace(compile(wanted));
+    }
+
     void make_reference() {
         ReferenceRecord &r = record_.reference;
         if (plan_.reference) {
@@ -167,11 +202,8 @@ private:
             if (r.spp < 2 * record_.spp.back())
                 warn(fmt::format("the reference of the sweep that is continued has {} samples per pixel only", r.spp));
         } else {
-            Candidate candidate = *best_;
-            candidate.scene.strategy[AXIS_sampler] = CHOICE_sampler_independent;
-            if (candidate.scene.strategy.math == MathMode::fast) // fast math is itself measured against the reference
-                candidate.scene.strategy.math = MathMode::precise;
-            CompiledStrategy strategy = compile(candidate);
+            std::optional<CompiledStrategy> own;
+            CompiledStrategy &strategy = reference_strategy(own);
             const unsigned half = (reference_spp() + 1) / 2;
             const auto begun = std::chrono::steady_clock::now();
             const auto a = strategy.render(half, plan_.seed, first_reference_sample_a),
@@ -181,14 +213,14 @@ private:
             reference_.crop = a.image.crop;
             reference_.metadata["opal.dialect"] = record_.dialect;
             write_exr(reference_, reference_file());
-            r = {best_->name,
+            r = {best().name,
                  2 * half,
                  a.seconds + b.seconds,
                  (sa.mean_luminance + sb.mean_luminance) / 2,
                  std::hypot(sa.stderr_luminance, sb.stderr_luminance) / 2,
                  true};
-            info(fmt::format("reference by {}: {} samples per pixel, {:.3g} s", best_->label, r.spp, r.seconds));
-            count_render(begun, r.spp * record_of(*best_).pilot_seconds_a_sample);
+            info(fmt::format("reference by {}: {} samples per pixel, {:.3g} s", best().label, r.spp, r.seconds));
+            count_render(begun, r.spp * best().pilot_seconds_a_sample);
         }
         r.mean_square = mean_square(reference_);
         if (!std::filesystem::exists(plan_.folder / "reference.png"))
@@ -228,13 +260,6 @@ private:
         return *std::find_if(s.points.begin(), s.points.end(), [&](const SweepPoint &p) { return p.spp == spp; });
     }
 
-    // The candidate's compiled strategy, which the first use compiles.
-    CompiledStrategy &compiled(size_t candidate) {
-        if (!compiled_[candidate])
-            compiled_[candidate] = std::make_unique<CompiledStrategy>(compile(candidates_[candidate]));
-        return *compiled_[candidate];
-    }
-
     // The time that every strategy gets: that of the fastest strategy for the most samples.
     double equal_time_seconds() {
         double seconds = INFINITY;
@@ -246,8 +271,8 @@ private:
 
     // Renders in equal_time_seconds, within equal_time_tolerance where samples are short enough for that: the samples
     // per pixel follow from the rate of the last render.
-    void render_equal_time_image(const Candidate &c) {
-        StrategyRecord &s = record_of(c);
+    void render_equal_time_image(size_t candidate) {
+        StrategyRecord &s = record_of(candidates_[candidate]);
         const double wanted = equal_time_seconds();
         const auto is_equal = [&](double seconds) {
             return std::abs(seconds - wanted) <= equal_time_tolerance * wanted;
@@ -258,7 +283,7 @@ private:
         if (s.shot.spp > 0 && is_equal(s.shot.seconds) &&
             std::ranges::all_of(files, [](const std::string &file) { return std::filesystem::exists(file); }))
             return;
-        CompiledStrategy strategy = compile(c);
+        CompiledStrategy &strategy = compiled(candidate);
         CompiledStrategy::RenderResult r;
         unsigned spp = s.points.back().spp;
         double seconds = s.points.back().replicates[0].seconds;
@@ -282,8 +307,9 @@ private:
     const Device &device_;
     const std::vector<Candidate> &candidates_;
     SweepRecord &record_;
-    const Candidate *best_ = nullptr;
+    size_t best_ = 0;                                         // candidate
     std::vector<std::unique_ptr<CompiledStrategy>> compiled_; // by candidate
+    size_t renderers_made_ = 0;
     Image reference_;
     std::optional<RunningProgress> progress_;
     double wall_done_ = 0, planned_done_ = 0; // seconds of the renders so far: on the wall, and by the pilots
@@ -291,14 +317,14 @@ private:
 
 } // namespace
 
-void measure_points(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates,
-                    SweepRecord &record) {
-    SweepRunner(plan, device, candidates, record).measure();
-}
-
-void render_equal_time_images(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates,
-                              SweepRecord &record) {
-    SweepRunner(plan, device, candidates, record).render_equal_time_images();
+size_t run_sweep(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates,
+                 SweepRecord &record, SweepPart part) {
+    SweepRunner runner(plan, device, candidates, record);
+    if (part != SweepPart::images)
+        runner.measure_points();
+    if (part != SweepPart::points)
+        runner.render_equal_time_images();
+    return runner.renderers_made();
 }
 
 } // namespace opal

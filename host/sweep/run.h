@@ -14,15 +14,17 @@ struct SweepPlan {
     const Image *reference = nullptr; // of --reference; nullptr: the best strategy renders one
 };
 
-// Measures the pilots, the reference and the points of the candidates that `record` lacks, all on this device.
-// Replicates go in rounds, one of every strategy each, so that a disturbance of the machine affects all strategies.
-// Each candidate must have its StrategyRecord. Throws Interrupted; finished results are kept.
-void measure_points(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates,
-                    SweepRecord &record);
+enum class SweepPart { points, images, all };
 
-// Renders each candidate for the same time, the one that the fastest strategy takes for the most samples. Needs
-// measure_points on all devices.
-void render_equal_time_images(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates,
-                              SweepRecord &record);
+// Measures what `record` lacks of the candidates, all on this device. Each candidate must have its StrategyRecord.
+// - points: the pilots, the reference, and the points. Replicates go in rounds, one of every strategy each, so that a
+//   disturbance of the machine affects all strategies.
+// - images: each candidate's image in the same time, the one that the fastest strategy takes for the most samples.
+// Needs
+//   the points of all devices.
+// A strategy is compiled once for all of its part, and freed after its image. Returns the number of renderers made.
+// Throws Interrupted; finished results are kept.
+size_t run_sweep(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates,
+                 SweepRecord &record, SweepPart part = SweepPart::all);
 
 } // namespace opal

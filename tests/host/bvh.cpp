@@ -162,8 +162,15 @@ bool meets_box(const Ray &ray, const BvhNode &node, int child, double nearest) {
     return enter <= leave;
 }
 
+std::vector<TriangleBlock> blocks_of(const Bvh &bvh, const TriangleSoup &soup) {
+    std::vector<TriangleBlock> blocks;
+    for (const BlockIds &ids : bvh.leaves[SHAPE_triangle])
+        blocks.push_back(pack_block(soup, ids));
+    return blocks;
+}
+
 // The nearest hit by way of the tree.
-double hit_tree(const Ray &ray, const Bvh &bvh) {
+double hit_tree(const Ray &ray, const Bvh &bvh, const std::vector<TriangleBlock> &blocks) {
     std::vector<uint> stack{0};
     double nearest = infinity;
     while (!stack.empty()) {
@@ -172,7 +179,7 @@ double hit_tree(const Ray &ray, const Bvh &bvh) {
         if (at & OPAL_LEAF) {
             if ((at >> OPAL_SHAPE_SHIFT & OPAL_SHAPE_BITS) != SHAPE_triangle)
                 continue;
-            const TriangleBlock &block = bvh.blocks[at & OPAL_BLOCK_BITS];
+            const TriangleBlock &block = blocks[at & OPAL_BLOCK_BITS];
             const auto vertex = [&block](int corner, int place) {
                 return Vec3{block.vertex[corner][0][place], block.vertex[corner][1][place],
                             block.vertex[corner][2][place]};
@@ -190,6 +197,7 @@ double hit_tree(const Ray &ray, const Bvh &bvh) {
 
 void check_against_brute_force(const TriangleSoup &soup, int rays) {
     const Bvh bvh = build_bvh(soup);
+    const std::vector<TriangleBlock> triangle_blocks = blocks_of(bvh, soup);
     Random random(5);
     int hits = 0;
     for (int i = 0; i < rays; i++) {
@@ -205,7 +213,7 @@ void check_against_brute_force(const TriangleSoup &soup, int rays) {
         if (i % 3 == 1)
             ray.direction = {i % 9 == 1 ? 1. : 0., i % 9 == 4 ? -1. : 0., i % 9 == 7 ? 1. : 0.};
         const double expected = hit_brute_force(ray, soup);
-        const double found = hit_tree(ray, bvh);
+        const double found = hit_tree(ray, bvh, triangle_blocks);
         if (found != expected)
             FAIL("ray " << i << ": " << found << ", not " << expected);
         hits += expected < infinity;
@@ -227,8 +235,8 @@ struct Structure {
     Box visit(uint at) {
         if (at & OPAL_LEAF) {
             const uint shape = at >> OPAL_SHAPE_SHIFT & OPAL_SHAPE_BITS, block = at & OPAL_BLOCK_BITS;
-            return shape == SHAPE_triangle ? visit_block(bvh.blocks.at(block))
-                                           : visit_others(shape, bvh.other_blocks.at(shape).at(block));
+            const BlockIds &ids = bvh.leaves.at(shape).at(block);
+            return shape == SHAPE_triangle ? visit_block(pack_block(soup, ids)) : visit_others(shape, ids);
         }
         nodes++;
         Box all = Box::empty();
@@ -296,11 +304,11 @@ void check_structure(const TriangleSoup &soup, const Bvh &bvh) {
     Structure structure{soup, bvh, whole};
     structure.visit(0);
     CHECK(structure.nodes == bvh.nodes.size());
-    CHECK(structure.blocks == (soup.corners.empty() ? 0 : bvh.blocks.size())); // none at all still has an empty one
-    std::size_t other_blocks = 0;
-    for (const auto &blocks : bvh.other_blocks)
-        other_blocks += blocks.size();
-    CHECK(structure.other_blocks == other_blocks);
+    std::size_t leaves = 0;
+    for (const auto &of_shape : bvh.leaves)
+        leaves += of_shape.size();
+    const bool nothing = soup.corners.empty() && soup.others.empty(); // still has an empty block
+    CHECK(structure.blocks + structure.other_blocks == (nothing ? 0 : leaves));
     CHECK(structure.other_seen == std::vector<int>(soup.others.size(), 1));
     if (whole)
         CHECK(structure.triangle_seen == std::vector<int>(soup.corners.size(), 1));
@@ -355,7 +363,7 @@ BinaryTree halves_of(const TriangleSoup &soup, bool ordered) {
 }
 
 double cost_of(BinaryTree &tree, const TriangleSoup &soup) {
-    const Bvh bvh = collapse(tree, soup);
+    const Bvh bvh = collapse(tree, !soup.others.empty());
     check_structure(soup, bvh);
     return sah_cost(bvh);
 }
@@ -419,8 +427,24 @@ TEST_CASE("the tree is the same whichever thread builds which part", "[bvh]") {
     const TriangleSoup soup = random_soup(70000, 0.02f, 9);
     const Bvh a = build_bvh(soup), b = build_bvh(soup);
     REQUIRE(a.nodes.size() == b.nodes.size());
-    for (std::size_t i = 0; i < a.blocks.size(); i++)
-        REQUIRE(std::equal(a.blocks[i].id, a.blocks[i].id + 8, b.blocks[i].id));
+    REQUIRE(a.leaves == b.leaves);
+}
+
+TEST_CASE("triangles that are left out change nothing about the others' tree", "[bvh]") {
+    for (const TriangleSoup &soup : {with_others(random_soup(3000, 0.05f, 2), 50), needles(3000, 6)}) {
+        const std::vector<uint> left_out{0, 1, 1000, 2999};
+        TriangleSoup rest = soup;
+        for (auto id = left_out.rbegin(); id != left_out.rend(); ++id)
+            rest.corners.erase(rest.corners.begin() + *id);
+        Bvh with_less = build_bvh(soup, left_out);
+        const Bvh expected = build_bvh(rest);
+        for (BlockIds &ids : with_less.leaves[SHAPE_triangle])
+            for (uint &id : ids) // numbered as in `rest`
+                id -= id == OPAL_NONE ? 0
+                                      : uint(std::lower_bound(left_out.begin(), left_out.end(), id) - left_out.begin());
+        CHECK(with_less.leaves == expected.leaves);
+        CHECK(sah_cost(with_less) == sah_cost(expected));
+    }
 }
 
 TEST_CASE("sah_cost of a tree known by hand", "[bvh]") {
@@ -431,7 +455,7 @@ TEST_CASE("sah_cost of a tree known by hand", "[bvh]") {
             add_triangle(soup, {x, 0, 0}, {x, 1, 0}, {x, i % 2 ? 1.f : 0.f, 1});
     const Bvh bvh = build_bvh(soup);
     CHECK(bvh.nodes.size() == 1);
-    CHECK(bvh.blocks.size() == 2);
+    CHECK(bvh.leaves[SHAPE_triangle].size() == 2);
     // Half areas: each square 1, the whole box 10 + 10 + 1.
     CHECK(sah_cost(bvh) == Approx(node_cost + 2 * block_cost / 21));
     CHECK(sah_cost(build_bvh(random_soup(1, 1, 1))) == node_cost + block_cost);
@@ -472,7 +496,7 @@ TEST_CASE("reinsertion mends a poor tree and keeps it whole", "[bvh]") {
 
 TEST_CASE("the parts of long triangles cover them, and make a cheaper tree that finds the same", "[bvh]") {
     const TriangleSoup soup = needles(3000, 6);
-    const std::vector<BuildPrimitive> whole = whole_primitives(soup), parts = split_primitives(soup);
+    const LargeVector<BuildPrimitive> whole = whole_primitives(soup), parts = split_primitives(soup);
     REQUIRE(parts.size() > whole.size());
     CHECK(parts.size() < 3 * whole.size());
     std::vector<std::vector<Box>> boxes(soup.corners.size());

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -105,6 +106,53 @@ TEST_CASE("emitters of each kind, in the flattened units", "[emitters]") {
         for (const LightTriangle &row : scene.light_triangles)
             CHECK(area_of(scene, row.slot) / row.inverse_pdf == Approx(0.5));
     }
+}
+
+TEST_CASE("emitters are chosen by power unless a strategy says otherwise, and alike where powers are equal",
+          "[emitters]") {
+    CHECK(Strategy{}[AXIS_emitter_choice] == CHOICE_emitter_choice_power);
+    const auto lamp = [](double place, double side, double radiance) {
+        return light(Parallelogram{{place, 0, 0}, {side, 0, 0}, {0, side, 0}}, {radiance, radiance, radiance});
+    };
+    const auto probabilities = [](const FlatScene &scene) {
+        std::vector<float> all;
+        for (const EmitterRecord &emitter : scene.emitters)
+            all.push_back(emitter.probability);
+        return all;
+    };
+    // Their areas differ by the rounding of corners. Black lamps are no emitters.
+    SceneDescription description =
+        scene_of({lamp(-3.3, 0.007, 4), lamp(0.123, 0.007, 4), lamp(2.1, 0.014, 1), lamp(2.5, 0.014, 0)});
+    description.lights = {{emitter_point{{0, 0, 1}, {0, 0, 0}}, {}}};
+    FlatScene scene = flatten(description, 8);
+    REQUIRE(scene.emitters.size() == 3);
+    CHECK((scene.emitters[0].u.of_parallelogram.area != scene.emitters[1].u.of_parallelogram.area));
+    CHECK(scene.features.axes[AXIS_emitter_choice] == CHOICE_emitter_choice_uniform);
+    CHECK(scene.features.axis_reasons[AXIS_emitter_choice] == "all emitters have the same power");
+    description.strategy[AXIS_emitter_choice] = CHOICE_emitter_choice_uniform;
+    CHECK(probabilities(scene) == probabilities(flatten(description, 8)));
+
+    description.strategy = {};
+    description.meshes[2].emits_on_both_sides = true; // of twice the power
+    scene = flatten(description, 8);
+    CHECK(scene.features.axes[AXIS_emitter_choice] == CHOICE_emitter_choice_power);
+    CHECK(scene.emitters[2].probability == Approx(0.5));
+
+    description.meshes.resize(1);
+    scene = flatten(description, 8);
+    CHECK(scene.features.axes[AXIS_emitter_choice] == CHOICE_emitter_choice_uniform);
+    CHECK(scene.features.axis_reasons[AXIS_emitter_choice] == "there is nothing to choose from");
+}
+
+TEST_CASE("emitters whose powers are all 0 as numbers are chosen alike", "[emitters]") {
+    SceneDescription description;
+    description.lights = {{emitter_constant{{1, 1, 1}}, {}}}; // the scene's bounding sphere is empty
+    CHECK(flatten(description, 8).emitters.at(0).probability == 1);
+    const Color least{0, 0, std::numeric_limits<double>::denorm_min()}; // its luminance is 0
+    description = scene_of({light(one_triangle, least), light(one_triangle, least)});
+    const FlatScene scene = flatten(description, 8);
+    REQUIRE(scene.emitters.size() == 2);
+    CHECK((scene.emitters[0].probability == 0.5f && scene.emitters[1].probability == 0.5f));
 }
 
 TEST_CASE("an environment sheds its power on the scene's bounding sphere, and there is one", "[emitters]") {

@@ -137,21 +137,22 @@ TEST_CASE_METHOD(LoadFixture, "integrators' own values", "[load]") {
 
 TEST_CASE_METHOD(LoadFixture, "every axis and number is a property of the integrator too", "[load]") {
     const Strategy s =
-        load_integrator("<integrator type='path_tracer_recursive'><string name='lighting' value='mis'/><string "
-                        "name='mis' value='power'/>"
-                        "<string name='rr' value='throughput-eta'/><string name='hemisphere' value='cosine'/>"
-                        "<string name='emitter_choice' value='power'/><string name='triangle_choice' value='uniform'/>"
-                        "<string name='sampler' value='sobol'/><integer name='maxDepth' value='9'/><integer "
-                        "name='rrDepth' value='4'/>"
-                        "<string name='math' value='fast'/><integer name='lanes' value='8'/><boolean name='specialise' "
-                        "value='False'/>"
-                        "</integrator>")
+        load_integrator(
+            "<integrator type='path_tracer_recursive'><string name='lighting' value='mis'/><string "
+            "name='mis' value='power'/>"
+            "<string name='rr' value='throughput-eta'/><string name='hemisphere' value='cosine'/>"
+            "<string name='emitter_choice' value='uniform'/><string name='triangle_choice' value='uniform'/>"
+            "<string name='sampler' value='sobol'/><integer name='maxDepth' value='9'/><integer "
+            "name='rrDepth' value='4'/>"
+            "<string name='math' value='fast'/><integer name='lanes' value='8'/><boolean name='specialise' "
+            "value='False'/>"
+            "</integrator>")
             .strategy;
     CHECK(s[AXIS_lighting] == CHOICE_lighting_mis);
     CHECK(s[AXIS_mis] == CHOICE_mis_power);
     CHECK(s[AXIS_rr] == CHOICE_rr_throughput_eta);
     CHECK(s[AXIS_hemisphere] == CHOICE_hemisphere_cosine);
-    CHECK(s[AXIS_emitter_choice] == CHOICE_emitter_choice_power);
+    CHECK(s[AXIS_emitter_choice] == CHOICE_emitter_choice_uniform);
     CHECK(s[AXIS_triangle_choice] == CHOICE_triangle_choice_uniform);
     CHECK(s[AXIS_sampler] == CHOICE_sampler_sobol);
     CHECK(s.max_depth == 9);

@@ -91,6 +91,14 @@ TEST_CASE("The time left is told where it is known, until it has passed", "[prog
                Catch::Matches("test     1\\d %  [67]\\.\\d s left\n"));
 }
 
+TEST_CASE("The step that lasts is told at the end of the line", "[progress]") {
+    CHECK(told_by([] {
+              RunningProgress running("pilots");
+              running.tell("compile MIS, power heuristic");
+              sleep(1.3);
+          }) == "pilots  1 s  compile MIS, power heuristic\n");
+}
+
 TEST_CASE("A compilation within a longer task is told by the task's line", "[progress]") {
     CHECK(told_by([] {
               const RunningProgress whole("sweep"), part("compile");

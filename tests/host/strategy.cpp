@@ -4,9 +4,12 @@
 #include "read/nori/load.h"
 #include "scene/options.h"
 #include "strategies/check.h"
+#include "strategies/presets.h"
 #include "support/error_of.h"
 
 #include <catch2/catch.hpp>
+
+#include <set>
 
 using namespace opal;
 using opal::test::error_of;
@@ -74,7 +77,7 @@ TEST_CASE("a choice is found with either dash, or fails with the list", "[strate
     CHECK(error_of([] { find_choice(AXIS_mis, "powr"); }) ==
           "unknown mis 'powr'; did you mean 'power'? available: " + joined(names_of(axes()[AXIS_mis].choices)));
     CHECK(error_of([] { find_choice(AXIS_emitter_choice, "x"); }) ==
-          "unknown emitter-choice 'x'; available: uniform, power");
+          "unknown emitter-choice 'x'; available: power, uniform");
 }
 
 TEST_CASE("a scene's integrator bears the name that was written, unless another is chosen", "[strategy]") {
@@ -92,7 +95,7 @@ TEST_CASE("overrides set axes and numbers", "[strategy]") {
     Strategy s = overridden({{"lighting", "mis"},
                              {"mis", "power"},
                              {"hemisphere", "cosine"},
-                             {"emitter-choice", "power"},
+                             {"emitter-choice", "uniform"},
                              {"triangle-choice", "uniform"},
                              {"rr", "throughput-eta"},
                              {"sampler", "sobol"},
@@ -105,7 +108,7 @@ TEST_CASE("overrides set axes and numbers", "[strategy]") {
     CHECK(s[AXIS_lighting] == CHOICE_lighting_mis);
     CHECK(s[AXIS_mis] == CHOICE_mis_power);
     CHECK(s[AXIS_hemisphere] == CHOICE_hemisphere_cosine);
-    CHECK(s[AXIS_emitter_choice] == CHOICE_emitter_choice_power);
+    CHECK(s[AXIS_emitter_choice] == CHOICE_emitter_choice_uniform);
     CHECK(s[AXIS_triangle_choice] == CHOICE_triangle_choice_uniform);
     CHECK(s[AXIS_rr] == CHOICE_rr_throughput_eta);
     CHECK(s[AXIS_sampler] == CHOICE_sampler_sobol);
@@ -182,7 +185,7 @@ TEST_CASE("an integrator's name sets what it means, and explicit axes win", "[st
         CHECK(s[AXIS_lighting] == row.lighting);
     }
     Strategy s =
-        overridden({{"integrator", "path_mis"}, {"lighting", "bsdf"}, {"rr", "off"}, {"emitter-choice", "power"}});
+        overridden({{"integrator", "path_mis"}, {"lighting", "bsdf"}, {"rr", "off"}, {"emitter-choice", "uniform"}});
     CHECK(s[AXIS_lighting] == CHOICE_lighting_bsdf);
     CHECK(s[AXIS_rr] == CHOICE_rr_off);
     CHECK(overridden({{"integrator", "path_mats"}})[AXIS_rr] == CHOICE_rr_throughput_eta);
@@ -263,4 +266,23 @@ TEST_CASE("endless paths are allowed with a warning", "[strategy]") {
     CHECK_THAT(warnings().back(), Catch::StartsWith("rr off and no max-depth"));
     CHECK(check_error(lit_scene(), {{"integrator", "path_mis"}, {"rr", "off"}, {"max-depth", "5"}}).empty());
     CHECK(warnings().size() == before + 1);
+}
+
+TEST_CASE("the preset all leaves out what the scene does already", "[strategy]") {
+    SceneDescription scene = lit_scene();
+    override_strategy(scene.strategy, {{"integrator", "path_mis"}});
+    const auto names = [&] {
+        std::set<std::string> all;
+        for (const Candidate &c : parse_strategies(scene, {"all"}, {}))
+            all.insert(c.name);
+        return all;
+    };
+    const std::string alike = "lighting=mis,mis=power,emitter-choice=uniform",
+                      sobol = "lighting=mis,mis=power,sampler=sobol";
+    const auto before = names();
+    CHECK((before.contains(alike) && before.contains(sobol)));
+    override_strategy(scene.strategy, {{"emitter-choice", "uniform"}, {"sampler", "sobol"}});
+    const auto after = names();
+    CHECK(after.size() == before.size() - 2);
+    CHECK((!after.contains(alike) && !after.contains(sobol)));
 }

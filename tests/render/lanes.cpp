@@ -125,7 +125,7 @@ TEST_CASE("The general kernel renders what the specialised ones do", "[lanes]") 
     const std::vector<Overrides> strategies = {
         {{"integrator", "ao"}, {"hemisphere", "uniform"}},
         {{"integrator", "whitted"}},
-        {{"integrator", "direct_lighting"}, {"lighting", "emitter"}, {"emitter-choice", "power"}},
+        {{"integrator", "direct_lighting"}, {"lighting", "emitter"}, {"emitter-choice", "uniform"}},
         {{"integrator", "path"}, {"lighting", "bsdf"}, {"rr", "fixed"}},
         {{"integrator", "path"}, {"lighting", "mis"}, {"triangle-choice", "uniform"}, {"sampler", "sobol"}}};
     // In double, where the device has it: the general kernel lists no faces, and what it rounds otherwise long paths

@@ -1,8 +1,10 @@
 // `opal sweep` as its users meet it, on a scene of a few pixels: slopes, the page, resuming, refusals.
 #include "base/exit_code.h"
 #include "image/image.h"
+#include "read/nori/load.h"
 #include "support/device.h"
 #include "support/scratch.h"
+#include "sweep/run.h"
 
 #include <nlohmann/json.hpp>
 
@@ -277,4 +279,36 @@ TEST_CASE("Several devices and kinds of math are crossed, each device in a proce
         CHECK(strategy["points"][0]["replicates"].size() == 2);
         CHECK(std::filesystem::exists(folder.scratch / ("out/equal_time_" + std::to_string(s + 1) + ".exr")));
     }
+}
+
+TEST_CASE("A sweep makes one renderer a strategy", "[sweep]") {
+    const SceneFolder folder;
+    const std::vector<Candidate> candidates =
+        parse_strategies(load_scene(folder.scene), {"lighting=bsdf;lighting=mis;sampler=stratified"}, {});
+    const SweepPlan plan{.folder = folder.scratch.path()};
+    SweepRecord record;
+    record.devices = {{}};
+    record.replicates = 2;
+    record.spp = {2, 8};
+    for (const Candidate &c : candidates)
+        record.strategy(c.name, c.label);
+    const auto made = [&](SweepPart part = SweepPart::all) {
+        return run_sweep(plan, device(), candidates, record, part);
+    };
+    CHECK(made() == 3);
+    for (const StrategyRecord &s : record.strategies)
+        CHECK((s.points.size() == 2 && s.points[1].replicates.size() == 2 && s.shot.spp > 0));
+    CHECK(made(SweepPart::points) == 0); // all is there
+    record.strategies[1].points[0].replicates.pop_back();
+    CHECK(made(SweepPart::points) == 1);
+}
+
+TEST_CASE("A renderer of a sweep renders what a new one does", "[sweep]") {
+    const SceneFolder folder;
+    const auto stratified = parse_strategies(load_scene(folder.scene), {"sampler=stratified"}, {}).front();
+    const auto fresh = [&] { return CompiledStrategy(device(), stratified, Sources::embedded()); };
+    CompiledStrategy used = fresh();
+    used.render(3, 5);
+    CHECK(used.render(16, 7).film.sum == fresh().render(16, 7).film.sum);
+    CHECK(used.render(4, 7).film.sum == fresh().render(4, 7).film.sum);
 }

@@ -32,18 +32,20 @@ Group path_group() {
 }
 
 Group direct_group() {
-    return {
-        "direct",
-        matte_gallery(),
-        512,
-        {{{"integrator", "direct_lighting"}, {"lighting", "bsdf"}},
-         {{"integrator", "direct_lighting"}, {"lighting", "emitter"}},
-         {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "balance"}},
-         {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "power"}},
-         {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "one-sample"}},
-         {{"integrator", "whitted"}},
-         {{"integrator", "path_mis"}, {"max-depth", "2"}, {"emitter-choice", "power"}, {"triangle-choice", "uniform"}},
-         {{"integrator", "path_ems"}, {"max-depth", "2"}, {"triangle-choice", "uniform"}}}};
+    return {"direct",
+            matte_gallery(),
+            512,
+            {{{"integrator", "direct_lighting"}, {"lighting", "bsdf"}},
+             {{"integrator", "direct_lighting"}, {"lighting", "emitter"}},
+             {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "balance"}},
+             {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "power"}},
+             {{"integrator", "direct_lighting"}, {"lighting", "mis"}, {"mis", "one-sample"}},
+             {{"integrator", "whitted"}},
+             {{"integrator", "path_mis"},
+              {"max-depth", "2"},
+              {"emitter-choice", "uniform"},
+              {"triangle-choice", "uniform"}},
+             {{"integrator", "path_ems"}, {"max-depth", "2"}, {"triangle-choice", "uniform"}}}};
 }
 
 // The gallery without its ceiling.
@@ -64,9 +66,9 @@ Group sky_group() {
             512,
             {{{"lighting", "bsdf"}, {"hemisphere", "cosine"}},
              {{"lighting", "emitter"}},
-             {{"lighting", "emitter"}, {"emitter-choice", "power"}},
+             {{"lighting", "emitter"}, {"emitter-choice", "uniform"}},
              {{"lighting", "mis"}, {"mis", "balance"}},
-             {{"lighting", "mis"}, {"mis", "power"}, {"emitter-choice", "power"}}}};
+             {{"lighting", "mis"}, {"mis", "power"}, {"emitter-choice", "uniform"}}}};
 }
 
 Group occlusion_group() {

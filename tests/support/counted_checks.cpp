@@ -89,7 +89,7 @@ Findings check_counted(const Sources &sources, unsigned) {
     fixed.strategy.rr_prob = 1e-5;
     findings.push_back(counted("fixed roulette, 1e-5", fixed, {{"lighting", "bsdf"}, {"rr", "fixed"}}, 0.5, sources));
 
-    const Overrides by_light = {{"lighting", "emitter"}},
+    const Overrides by_light = {{"lighting", "emitter"}, {"emitter-choice", "uniform"}},
                     by_power = {{"lighting", "emitter"}, {"emitter-choice", "power"}};
     findings.push_back(counted("one lamp of three", lamps({50, 50}), by_light, lamp, sources));
     findings.push_back(counted("one lamp of 1000", lamps(std::vector<double>(999, 50)), by_light, lamp, sources));

