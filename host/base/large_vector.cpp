@@ -6,6 +6,7 @@
 #include <malloc.h>
 #endif
 #include <sys/mman.h>
+#include <unistd.h>
 
 namespace opal {
 
@@ -17,11 +18,22 @@ void return_large_blocks() {
 #endif
 }
 
-void advise_huge_pages(void *memory, std::size_t bytes) {
+namespace {
+
+// Gives the system advice about the whole pages of a block of memory, if there are any.
+void advise(void *memory, std::size_t bytes, std::size_t page, int advice) {
     char *const begin = static_cast<char *>(memory), *const end = begin + bytes;
-    char *const first = begin + (huge_page - reinterpret_cast<std::uintptr_t>(begin) % huge_page) % huge_page;
-    if (first + huge_page <= end)
-        madvise(first, std::size_t(end - first) / huge_page * huge_page, MADV_HUGEPAGE);
+    char *const first = begin + (page - reinterpret_cast<std::uintptr_t>(begin) % page) % page;
+    if (first + page <= end)
+        madvise(first, std::size_t(end - first) / page * page, advice);
+}
+
+} // namespace
+
+void advise_huge_pages(void *memory, std::size_t bytes) { advise(memory, bytes, huge_page, MADV_HUGEPAGE); }
+
+void drop_pages(void *memory, std::size_t bytes) {
+    advise(memory, bytes, std::size_t(sysconf(_SC_PAGESIZE)), MADV_DONTNEED);
 }
 
 } // namespace opal

@@ -13,6 +13,9 @@ void advise_huge_pages(void *memory, std::size_t bytes);
 
 constexpr std::size_t huge_page = 2u << 20;
 
+// Gives the pages that lie wholly in a part of a block of memory back to the system. Their bytes are lost.
+void drop_pages(void *memory, std::size_t bytes);
+
 // Makes malloc give every large block back to the system once it is freed. By default glibc keeps blocks below the size
 // of the largest one that was freed before, up to 32 MiB, and they add to the peak of what comes later.
 void return_large_blocks();

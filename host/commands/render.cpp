@@ -11,6 +11,7 @@
 #include "commands/options.h"
 #include "flatten/flat_scene.h"
 #include "flatten/scene_warnings.h"
+#include "render/kernel_choice.h"
 #include "render/render_film.h"
 #include "render/report.h"
 #include "scene/options.h"
@@ -60,8 +61,9 @@ void tell_what_runs(const SceneDescription &scene, const FlatScene &flat, const 
                      count(flat.triangles.size(), "triangle"), count(flat.emitters.size(), "emitter"),
                      text_of(scene.camera.window()), scene.spp, seed));
     info("how     " + strategy);
-    info(fmt::format("device  {}, {} lane{}, math {}", text_of(pick), lanes, lanes == 1 ? "" : "s",
-                     name_of(scene.strategy.math)));
+    info(fmt::format("device  {}, {} lane{}, math {}, {}", text_of(pick), lanes, lanes == 1 ? "" : "s",
+                     name_of(scene.strategy.math),
+                     scene.strategy.is_general() ? "the general kernel" : "a kernel for this scene"));
 }
 
 StopRule stop_rule(const Options &o) {
@@ -225,6 +227,19 @@ int report(const Request &request, RenderedFilm &rendered, const RenderReport &r
     return interrupt_exit_code();
 }
 
+// The paths that are asked, for suits_general_kernel. A goal for the error asks for as many as it takes.
+double paths_asked(const Request &request) {
+    if (request.rule.relative_error > 0)
+        return INFINITY;
+    const Crop window = request.scene.camera.window();
+    const double pixels = double(window.width) * window.height;
+    double paths = request.spp ? pixels * request.spp : INFINITY;
+    for (const double seconds : {request.rule.seconds, request.rule.wall_seconds})
+        if (seconds > 0)
+            paths = std::min(paths, paths_in(seconds));
+    return paths;
+}
+
 int render_scene(const Options &o) {
     Request request = prepare(o);
     SceneDescription &scene = request.scene;
@@ -237,6 +252,7 @@ int render_scene(const Options &o) {
         info(choice->text());
         scene.strategy = choice->strategy;
     }
+    scene.strategy.few_paths = suits_general_kernel(pick.info, paths_asked(request));
     const Stopwatch bvh;
     FlatScene flat = flatten_and_free(scene, build.lanes);
     const double bvh_seconds = bvh.seconds();

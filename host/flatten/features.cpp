@@ -220,7 +220,7 @@ Features find_features(const SceneDescription &description, const FlatScene &sce
     };
 
     Features features;
-    const bool specialise = description.strategy.specialise;
+    const bool specialise = !description.strategy.is_general();
     for (unsigned i = 0; i < FEATURE_COUNT; i++)
         features.list[i] = specialise ? Feature{decisions[i].on, decisions[i].reason}
                                       : Feature{general_has(i, lanes), "--specialise off"};

@@ -66,7 +66,8 @@ inline bool is_wide_filter(const Settings &settings) {
 }
 
 // lanes: the width that the kernel will have; decides whether triangles are listed beside the tree.
-FlatScene flatten(const SceneDescription &scene, int lanes);
+// with_face_list: may they be? Tests of the tree say no.
+FlatScene flatten(const SceneDescription &scene, int lanes, bool with_face_list = true);
 
 // The same of a scene that is flattened once: each triangle mesh is freed as soon as it is gathered, and left empty.
 FlatScene flatten_and_free(SceneDescription &scene, int lanes);

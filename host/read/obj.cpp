@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "read/file_kind.h"
 #include "read/obj_statements.h"
 
 #include <fmt/format.h>
@@ -56,11 +55,11 @@ template <size_t Count> bool holds(const std::string_view (&list)[Count], std::s
 // never, the faces are read again once all elements are known.
 class ObjReader : public ObjStatements {
 public:
-    ObjReader(const std::filesystem::path &file, std::string_view text, const Transform &to_world)
-        : ObjStatements(file.string(), text), file_(file.string()), to_world_(to_world) {}
+    ObjReader(const std::filesystem::path &file, const Transform &to_world)
+        : ObjStatements(file), file_(file.string()), to_world_(to_world) {}
 
     void read();
-    ObjFile finish() &&; // needs the text no longer
+    ObjFile finish() &&;
 
 private:
     struct FaceCorner {
@@ -349,6 +348,7 @@ std::vector<Entry> compact(const std::vector<Entry> &all, Triangles &triangles, 
 
 ObjFile ObjReader::finish() && {
     using Corner = TriangleMesh::Corner;
+    free_text();
     TriangleMesh mesh = std::move(faces_.mesh);
     mesh.positions = compact(positions_, mesh.triangles, [](Corner &corner) -> unsigned & { return corner.position; });
     positions_ = {};
@@ -362,10 +362,8 @@ ObjFile ObjReader::finish() && {
 } // namespace
 
 ObjFile read_obj(const std::filesystem::path &file, const Transform &to_world) {
-    std::string text = read_text_file(file, FileKind::obj);
-    ObjReader reader(file, text, to_world);
+    ObjReader reader(file, to_world);
     reader.read();
-    text = {};
     return std::move(reader).finish();
 }
 

@@ -1,7 +1,9 @@
 #include "read/obj_statements.h"
 
 #include "base/error.h"
+#include "base/large_vector.h"
 #include "base/values.h"
+#include "read/file_kind.h"
 #include "read/xml.h"
 
 #include <algorithm>
@@ -57,15 +59,33 @@ int parse_index(std::string_view word) {
 
 } // namespace
 
+ObjStatements::ObjStatements(const std::filesystem::path &file)
+    : file_(file), text_(read_text_file(file, FileKind::obj)), can_be_read_again_(is_regular_file(file)) {}
+
+void ObjStatements::free_text() { std::string().swap(text_); }
+
+// Drops the text before the present position.
+void ObjStatements::drop_text() {
+    constexpr size_t step = 1 << 20; // so that it takes few system calls
+    if (!can_be_read_again_ || position_ < dropped_ + step)
+        return;
+    drop_pages(&text_[dropped_], position_ - dropped_);
+    dropped_ = position_;
+}
+
 void ObjStatements::rewind() {
-    position_ = 0;
+    if (dropped_ > 0) {
+        free_text();
+        text_ = read_text_file(file_, FileKind::obj);
+    }
+    dropped_ = position_ = 0;
     lines_ = 0;
     absent = further_numbers = {};
 }
 
 std::string ObjStatements::rest() const {
     const size_t begin = size_t(words_[0].data() + words_[0].size() - text_.data());
-    std::string rest(text_.substr(begin, position_ - 1 - begin));
+    std::string rest = text_.substr(begin, position_ - 1 - begin);
     for (size_t at = rest.find('\n'); at != rest.npos; at = rest.find('\n')) // continued: without backslash and end
         rest.replace(rest.rfind('\\', at), at + 1 - rest.rfind('\\', at), " ");
     const auto first = std::find_if_not(rest.begin(), rest.end(), is_blank);
@@ -73,7 +93,8 @@ std::string ObjStatements::rest() const {
 }
 
 SourcePlace ObjStatements::place(std::string_view word) const {
-    SourcePlace place = place_in(file_, text_.substr(statement_), word.data() - text_.data() - ptrdiff_t(statement_));
+    SourcePlace place = place_in(file_.string(), std::string_view(text_).substr(statement_),
+                                 word.data() - text_.data() - ptrdiff_t(statement_));
     place.line += lines_before_;
     return place;
 }
@@ -103,6 +124,7 @@ ObjStatements::int_type ObjStatements::underflow() {
 // Reads the words of the next statement; false at the end of the text.
 bool ObjStatements::next() {
     words_.clear();
+    drop_text();
     while (words_.empty() && position_ < text_.size()) {
         statement_ = position_;
         lines_before_ = lines_;
@@ -115,7 +137,7 @@ bool ObjStatements::next() {
 // Adds the words of a line, and says whether it goes on in the next.
 bool ObjStatements::add_line() {
     const size_t end = std::min(text_.find('\n', position_), text_.size());
-    std::string_view row = text_.substr(position_, end - position_);
+    std::string_view row = std::string_view(text_).substr(position_, end - position_);
     position_ = end + 1;
     ++lines_;
     row = row.substr(0, comment_in(row));

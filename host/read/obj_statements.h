@@ -5,6 +5,7 @@
 #include "scene/place.h"
 
 #include <array>
+#include <filesystem>
 #include <streambuf>
 #include <string>
 #include <string_view>
@@ -24,15 +25,17 @@ struct ObjTally {
 // A line is made once the line before is read, so that a callback of the library can ask for the statement that it is
 // called for. Its numbers, too: the library gets zeros in their place. It would add up their digits one by one, so that
 // half of all numbers with six decimals are wrong in the last bits of a double, and call pow() for each digit beyond
-// the seventh. Throws Error "file:line:col: ..." for a malformed number or index.
+// the seventh. Statements that were read leave memory, as the meshes that they make enter it. Throws Error
+// "file:line:col: ..." for a malformed number or index, and those of read_text_file.
 class ObjStatements : public std::streambuf {
 public:
-    ObjStatements(std::string file, std::string_view text) : file_(std::move(file)), text_(text) {}
+    explicit ObjStatements(const std::filesystem::path &file);
 
 protected:
     virtual void take_other() = 0; // a statement that is none of these four
 
-    void rewind(); // to the first statement
+    void rewind();    // to the first statement
+    void free_text(); // once all statements are read
 
     // Of the present statement:
     using Words = std::vector<std::string_view>;
@@ -54,8 +57,12 @@ private:
     void take_numbers(size_t least, double (*parse)(std::string_view));
     void take_corner(std::string_view word);
 
-    std::string file_;
-    std::string_view text_;
+    void drop_text();
+
+    std::filesystem::path file_;
+    std::string text_;
+    bool can_be_read_again_;              // the file: it is no pipe
+    size_t dropped_ = 0;                  // bytes of the text whose pages are dropped
     size_t position_ = 0, statement_ = 0; // offsets of the next line and of the present statement
     int lines_ = 0, lines_before_ = 0;    // lines before these offsets
     Words words_;

@@ -25,9 +25,9 @@ constexpr unsigned long long max_sample_buffer_bytes = 256ull << 20,
 // CPU: the film and the samples of a pass take about so many bytes a pixel. Small images may take more.
 constexpr unsigned long long cpu_bytes_a_pixel = 120, small_sample_buffer_bytes = 32ull << 20;
 
-// Pixels of a band of the film: its sums are a buffer of 29 MB. A launch of the kernels that gather has as many
-// work-items as lanes cut it into.
-constexpr unsigned band_pixels = 1u << 19;
+// Pixels of a band of the film, whose sums are a buffer of 29 MB. PoCL compiles kernels apart for launches of more than
+// 65535 work-groups: at 8 lanes gathering has no more, as in small images.
+constexpr unsigned band_pixels = 8 * 65535;
 
 // A work-item renders one chunk of the samples of one tile. Tiles are cut into chunks for about so many work-items a
 // pass that all cores stay busy to its end.
@@ -102,7 +102,7 @@ Renderer::Renderer(const Device &device, FlatScene scene, const RenderOptions &o
     buffer_spp_ = unsigned(
         std::clamp<unsigned long long>(bytes / sample_bytes / pixels_, 1, 1ull * max_samples_a_chunk * max_chunks));
     check_room(device, pixels_ * (film_bytes + sample_bytes * buffer_spp_),
-               fmt::format("the film and its samples, {} x {} pixels", settings_.film.width, settings_.film.height));
+               fmt::format("the film of {} x {} pixels and its samples", settings_.film.width, settings_.film.height));
 
     const RunningProgress compiling("compile");
     double film_seconds = 0;

@@ -73,6 +73,7 @@ nlohmann::json RenderReport::json() const {
     j["driver"] = device.driver;
     j["lanes"] = lanes;
     j["strategy"] = strategy_json(scene);
+    j["kernel"] = scene.strategy.is_general() ? "general" : "special";
     j["width"] = film.width;
     j["height"] = film.height;
     if (film.crop != Crop{})

@@ -94,10 +94,11 @@ TEST_CASE("features are what the scene and the strategy ask for, each with a rea
         CHECK(is_wide_filter(flatten(description, 8).settings));
     }
     SECTION("everything without specialisation") {
-        description.strategy.specialise = false;
+        description.strategy.specialise = Specialise::off;
         const Features features = flatten(description, 8).features;
-        for (const Feature &feature : features.list)
-            CHECK(feature.on);
+        for (unsigned feature = 0; feature < FEATURE_COUNT; feature++)
+            CHECK(features[feature] == (feature != FEATURE_large_tree));
+        CHECK_FALSE(flatten(description, 1).features[FEATURE_face_list]);
         for (int axis : features.axes)
             CHECK(axis == -1);
     }

@@ -629,6 +629,17 @@ TEST_CASE_METHOD(ObjFixture, "a face before its elements means what it means beh
     CHECK(last.material_runs[0].material == 0);
 }
 
+TEST_CASE_METHOD(ObjFixture, "a file of megabytes is read again for a face before its elements", "[obj]") {
+    std::string padding; // its pages leave memory while it is read
+    for (int i = 0; i < 100000; ++i)
+        padding += "o a part with a number of its own\n";
+    const TriangleMesh mesh = read("f 4 3 2\n" + padding + square + padding + "f 1 2 3\n");
+    REQUIRE(mesh.triangles.size() == 2);
+    CHECK(mesh.positions.size() == 4);
+    CHECK_THAT(error_of([&] { read(padding + square + padding + "f 1 2 9\n"); }),
+               Catch::StartsWith(file() + ":200005:7: vertex index 9 is out of range: the file has 4"));
+}
+
 TEST_CASE_METHOD(ObjFixture, "what is left out of a file is noted once, unless --quiet", "[obj]") {
     scratch.write("a.obj",
                   "# v\nv 0 0 0 1\nv 1 0 0 0.5 0.5 0.5\nv 0 1 0 1 1 1 1\ng a\ns 1\nvp 1\nmg 1\nl 1 2\ncurv 0 1 1 2\n"

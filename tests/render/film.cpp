@@ -10,7 +10,11 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <cstring>
 #include <random>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 using namespace opal;
 using namespace opal::test;
@@ -34,7 +38,7 @@ TEST_CASE("A crop has the bits of its part of the image, with filters of any wid
 }
 
 TEST_CASE("A film of several bands has the bits of its parts", "[film]") {
-    SceneDescription scene = gallery(1000, 600); // bands of 2^19 pixels end within a row
+    SceneDescription scene = gallery(1000, 600); // a band ends within row 524
     for (int kind : {FILTER_box, FILTER_gaussian}) {
         scene.camera.filter.kind = kind;
         scene.camera.filter.radius = kind == FILTER_box ? 0.5 : 2;
@@ -47,6 +51,79 @@ TEST_CASE("A film of several bands has the bits of its parts", "[film]") {
             for (const Layer &layer : cropped(image_of(whole, true), crop).layers)
                 CHECK((part.get(layer.name).values == layer.values));
         }
+    }
+}
+
+TEST_CASE("A film without any pass is empty, and so is one after a restart", "[film]") {
+    Renderer renderer = renderer_of(furnace(0.5, 1));
+    for (int round = 0; round < 2; round++) {
+        const Film film = renderer.film();
+        REQUIRE(film.count.size() == size_t(film.width) * size_t(film.height));
+        CHECK(film.count == std::vector<unsigned>(film.count.size(), 0));
+        CHECK(film.sum == decltype(film.sum)(film.count.size()));
+        renderer.render(2);
+        CHECK(renderer.film().count == std::vector<unsigned>(film.count.size(), 2));
+        renderer.restart(1);
+    }
+}
+
+TEST_CASE("The last pixels of the largest image are gathered and cleared", "[film]") {
+    require_all_pass(check_largest_film());
+}
+
+TEST_CASE("Scenes share the program of the film", "[film]") {
+    const ScratchFolder folder;
+    // PoCL keeps each program in a folder of two levels, which it names by the program's text.
+    const auto programs = [&] {
+        size_t count = 0;
+        for (const auto &entry : std::filesystem::recursive_directory_iterator(folder / "cache"))
+            count += entry.is_regular_file() && entry.path().filename() == "program.bc";
+        return count;
+    };
+    std::filesystem::create_directory(folder / "cache");
+    std::vector<size_t> counts;
+    for (const char *scene : {"cbox_mis.xml", "furnace.xml --sampler sobol", "cbox_nee.xml", "cbox_mis.xml"}) {
+        const Outcome outcome = run_shell("POCL_CACHE_DIR=" + (folder / "cache").string() +
+                                          " " OPAL_BINARY " render " OPAL_SOURCE_DIR "/scenes/" + scene +
+                                          " --width 8 --height 8 --spp 1 --no-png -o " + (folder / "out.exr").string());
+        INFO(outcome.err);
+        REQUIRE(outcome.exit_code == 0);
+        counts.push_back(programs());
+    }
+    CAPTURE(counts);
+    if (counts[0] > 0) // another driver keeps none there
+        CHECK(counts == std::vector<size_t>{2, 3, 4, 4});
+}
+
+TEST_CASE("A render of 1920 x 1080 pixels takes at most 124 bytes for each", "[film]") {
+    const ScratchFolder folder;
+    std::string gaussian = read_text(OPAL_SOURCE_DIR "/scenes/cbox_mis.xml");
+    const size_t filter = gaussian.find("type=\"box\"");
+    REQUIRE(filter != std::string::npos);
+    gaussian.replace(filter, std::strlen("type=\"box\""), "type=\"gaussian\"");
+    // The largest memory that the process had at once, less that of a small picture.
+    const auto peak = [&](const std::string &scene, int width, int height) {
+        const std::string w = std::to_string(width), h = std::to_string(height), out = folder / "out.exr";
+        const pid_t child = fork();
+        if (child == 0) {
+            execl(OPAL_BINARY, OPAL_BINARY, "render", scene.c_str(), "--width", w.c_str(), "--height", h.c_str(),
+                  "--spp", "6", "--device", wanted_device().c_str(), "--quiet", "-o", out.c_str(), nullptr);
+            _exit(127);
+        }
+        int status = 0;
+        rusage used{};
+        REQUIRE(wait4(child, &status, 0, &used) == child);
+        REQUIRE((WIFEXITED(status) && WEXITSTATUS(status) == 0));
+        return 1024.0 * double(used.ru_maxrss);
+    };
+    std::filesystem::create_directory_symlink(OPAL_SOURCE_DIR "/scenes/meshes", folder / "meshes");
+    for (const std::string &scene :
+         {std::string(OPAL_SOURCE_DIR "/scenes/cbox_mis.xml"), folder.write("gaussian.xml", gaussian).string()}) {
+        peak(scene, 16, 16); // compiles
+        const double bytes = (peak(scene, 1920, 1080) - peak(scene, 16, 16)) / (1920 * 1080);
+        INFO(scene << ": " << bytes << " bytes a pixel");
+        CHECK(bytes <= 124);
+        CHECK(bytes > 60); // the film alone: else this measures nothing
     }
 }
 

@@ -106,6 +106,61 @@ Findings check_film(const Sources &sources, unsigned seed) {
     return findings;
 }
 
+Findings check_largest_film() {
+    constexpr unsigned side = 1u << 14, last = 4, value = 3, spp = 1; // `last` pixels at the end are a band
+    Settings settings{};
+    settings.width = settings.height = side;
+    settings.film = {0, 0, side, side};
+    settings.filter = FILTER_tent;
+    settings.filter_radius = 1;
+    const unsigned long long all = 1ull * side * side, sample_bytes = 4 * OPAL_SAMPLE_FLOATS;
+    if (sample_bytes * all > device().info.max_allocation) {
+        WARN("the device has no buffer of " << sample_bytes * all << " bytes for the samples of the largest image");
+        return {};
+    }
+    Findings findings;
+    for (int lanes : tested_lanes()) {
+        const std::string where = std::to_string(lanes) + " lanes: ";
+        BuildOptions build;
+        build.lanes = lanes;
+        const cl::Program program = build_film_program(device(), build, Sources::embedded());
+        struct Samples {
+            cl::Buffer buffer;
+        } const samples{make_buffer(device(), CL_MEM_READ_WRITE, sample_bytes * all, nullptr, "a test's samples")};
+        // Two rows of one value: what the filter reaches.
+        const std::vector<float> rows(size_t(OPAL_SAMPLE_FLOATS) * 2 * side, float(value));
+        const unsigned long long place = sample_bytes * (all - 2 * side);
+        with_device(device().info, [&] {
+            return device().handles->queue.enqueueWriteBuffer(samples.buffer, CL_TRUE, place, 4 * rows.size(),
+                                                              rows.data());
+        });
+        const std::vector<Settings> table{settings};
+        const Output<float> film(FILM_PLANES * last), weighted(FILM_WEIGHTED_PLANES * last);
+        const Output<cl_uint> counts(last), invalid(1 + 2 * OPAL_INVALID_RECORDS);
+        run(program, "gather", last, table, samples, 0u, spp, cl_uint(all - last), last, 1u, film, counts, invalid);
+        run(program, "gather_around", last, table, samples, 0u, spp, cl_uint(all - last), last, 1u, weighted);
+        const std::vector<float> sums = film.read(), around = weighted.read();
+        for (unsigned p = 0; p < last; p++) {
+            findings.push_back(exact(where + "sum", sums[FILM_SUM * last + p] == float(value)));
+            const float mean = around[FILM_WEIGHTED * last + p] / around[(FILM_WEIGHTED + 3) * last + p];
+            findings.push_back(exact(where + "weighted mean", std::abs(mean - float(value)) < 1e-5f));
+        }
+        findings.push_back(exact(where + "counts", counts.read() == std::vector<cl_uint>(last, 1)));
+        // The last tile of 8 x 8 pixels becomes empty, and the pixel before its last row does not.
+        constexpr unsigned tile = 8, tiles = side / tile * (side / tile);
+        run(program, "clear", 1, table, samples, tiles - 1, tiles, tile, tile, 1u, spp, 0u, spp);
+        std::vector<cl_uint> words(OPAL_SAMPLE_FLOATS * (tile + 1));
+        with_device(device().info, [&] {
+            return device().handles->queue.enqueueReadBuffer(samples.buffer, CL_TRUE, sample_bytes * (all - tile - 1),
+                                                             4 * words.size(), words.data());
+        });
+        for (unsigned p = 0; p <= tile; p++)
+            findings.push_back(
+                exact(where + "cleared", (words[OPAL_SAMPLE_FLOATS * p] == OPAL_SAMPLE_EMPTY) == (p > 0)));
+    }
+    return findings;
+}
+
 Findings check_crops(const Sources &sources, unsigned seed) {
     Findings findings;
     SceneDescription scene = with_strategy(gallery(23, 17), {{"specialise", "off"}, {"sampler", "sobol"}});

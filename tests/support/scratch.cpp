@@ -5,7 +5,9 @@
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <sys/resource.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 namespace opal::test {
 
@@ -41,6 +43,23 @@ Outcome run_shell(const std::string &command) {
     const std::string out = scratch / "out", err = scratch / "err";
     const int status = std::system(("( " + command + " ) >" + out + " 2>" + err).c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_text(out), read_text(err)};
+}
+
+double peak_bytes_of_opal(const std::vector<std::string> &arguments) {
+    std::vector<char *> words{const_cast<char *>(OPAL_BINARY)}; // execv writes to none of them
+    for (const std::string &argument : arguments)
+        words.push_back(const_cast<char *>(argument.c_str()));
+    words.push_back(nullptr);
+    const pid_t child = fork();
+    if (child == 0) {
+        execv(OPAL_BINARY, words.data());
+        _exit(127);
+    }
+    int status = 0;
+    rusage used{};
+    REQUIRE(wait4(child, &status, 0, &used) == child);
+    REQUIRE((WIFEXITED(status) && WEXITSTATUS(status) == 0));
+    return 1024.0 * double(used.ru_maxrss);
 }
 
 std::string wanted_device() {

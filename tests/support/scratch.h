@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace opal::test {
 
@@ -31,6 +32,10 @@ struct Outcome {
 };
 // Runs a shell command and keeps what it prints.
 Outcome run_shell(const std::string &command);
+
+// Runs `opal` with these arguments, without a shell; fails the test unless it ends with 0. Returns the most bytes of
+// memory that the process had at once.
+double peak_bytes_of_opal(const std::vector<std::string> &arguments);
 
 // The device that tests run on, as --device takes it: $OPAL_TEST_DEVICE, else "cpu".
 std::string wanted_device();

@@ -1,0 +1,55 @@
+// The memory that a whole render takes.
+#include "support/scratch.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <fmt/format.h>
+
+using namespace opal::test;
+
+namespace {
+
+// A hilly field of 2 * side * side triangles in quadrilaterals, as an OBJ file.
+std::string field(int side) {
+    std::string text;
+    for (int y = 0; y <= side; y++)
+        for (int x = 0; x <= side; x++) {
+            const double u = 2.0 * x / side - 1, v = 2.0 * y / side - 1;
+            text += fmt::format("v {:.7g} {:.7g} {:.7g}\n", u, v, 0.1 * std::sin(37 * u) * std::cos(53 * v));
+        }
+    for (int y = 0; y < side; y++)
+        for (int x = 1; x <= side; x++) {
+            const int a = y * (side + 1) + x, b = a + side + 1;
+            text += fmt::format("f {} {} {} {}\n", a, a + 1, b + 1, b);
+        }
+    return text;
+}
+
+} // namespace
+
+TEST_CASE("A render of a million triangles takes at most 110 bytes for each", "[memory]") {
+    const ScratchFolder folder;
+    // The peak of a render of the field, in bytes. The first render compiles.
+    const auto peak = [&](int side) {
+        folder.write("field.obj", field(side));
+        folder.write("field.xml",
+                     R"(<scene><integrator type="path_mis"/>
+  <camera type="perspective"><transform name="toWorld"><lookat origin="0 -1 2.5" target="0 0 0" up="0 1 0"/></transform>
+    <float name="fov" value="40"/><integer name="width" value="64"/><integer name="height" value="64"/></camera>
+  <mesh type="obj"><string name="filename" value="field.obj"/></mesh>
+  <mesh type="parallelogram"><point name="origin" value="-1 -1 3"/><vector name="u" value="0 2 0"/>
+    <vector name="v" value="2 0 0"/><emitter type="area"><color name="radiance" value="3 3 3"/></emitter></mesh>
+</scene>)");
+        const std::vector<std::string> render{"render",   folder / "field.xml", "--spp",    "1",
+                                              "--device", wanted_device(),      "--no-png", "--quiet",
+                                              "-o",       folder / "field.exr"};
+        peak_bytes_of_opal(render);
+        return peak_bytes_of_opal(render);
+    };
+    constexpr int side = 708; // 1 002 528 triangles
+    const double bytes = (peak(side) - peak(8)) / (2.0 * side * side);
+    INFO(bytes << " bytes a triangle");
+    CHECK(bytes <= 110);
+    CHECK(bytes > 60); // the tree alone: else this measures nothing
+}
