@@ -12,7 +12,7 @@ import tempfile
 
 from peers.report import PeerError, spread
 
-STRATEGY = ["--lighting", "mis", "--mis", "power", "--rr", "throughput-eta"]
+STRATEGY = ["--lighting", "mis", "--mis", "power", "--rr", "throughput-eta", "--specialise", "on"]  # one kernel for pilots and renders
 SIGMA = 4  # combined standard errors by which two mean luminances may differ
 HINTS = {"No module named": "; install it with `python3 -m venv V; V/bin/pip install mitsuba numpy` and name it with --python V/bin/python",
          "LLVM shared library": "; it is Debian's libllvm19, name it with --llvm, or leave it out with --variants scalar_rgb"}
