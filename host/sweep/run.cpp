@@ -12,7 +12,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 namespace opal {
@@ -20,7 +19,7 @@ namespace opal {
 namespace {
 
 constexpr double max_pilot_seconds = 0.5;     // for one pilot
-constexpr double max_pilot_spp = 1u << 16;    // and of no more samples a pixel than the strategy's points
+constexpr double max_pilots_seconds = 5;      // for all pilots together, without a budget
 constexpr double pilots_share = 0.1;          // of the budget, for all pilots together
 constexpr double equal_time_tolerance = 0.05; // of the times of "what each gives in the same time"
 constexpr unsigned equal_time_reruns = 2;
@@ -90,16 +89,13 @@ private:
         if (std::all_of(candidates_.begin(), candidates_.end(),
                         [&](const Candidate &c) { return record_of(c).pilot_cost > 0; }))
             return;
-        const double share =
-            record_.budget > 0 ? pilots_share * device_budget() / double(candidates_.size()) : max_pilot_seconds;
-        const double most_spp = double(record_.replicates) *
-                                std::accumulate(record_.spp.begin(), record_.spp.end(), 0.0); // as the points have
+        const double together = record_.budget > 0 ? pilots_share * device_budget() : max_pilots_seconds;
+        const double share = std::fmin(max_pilot_seconds, together / double(candidates_.size()));
         std::vector<Pilot> all;
         for (size_t i = 0; i < candidates_.size(); i++) {
             StrategyRecord &s = record_of(candidates_[i]);
             CompiledStrategy &strategy = compiled(i);
-            all.push_back(run_pilot(strategy, plan_.seed, std::fmin(max_pilot_seconds, share),
-                                    unsigned(std::fmin(most_spp, max_pilot_spp))));
+            all.push_back(run_pilot(strategy, plan_.seed, share));
             progress_->update(double(all.size()), double(candidates_.size()));
             s.independent = candidates_[i].scene.strategy[AXIS_sampler] == CHOICE_sampler_independent;
             s.compile_seconds = strategy.compile_seconds();
