@@ -15,6 +15,7 @@
 #include "commands/vary.h"
 #include "image/metrics.h"
 #include "plot/svg.h"
+#include "render/kernel_choice.h"
 #include "render/report.h"
 #include "scene/options.h"
 #include "sweep/convergence_plot.h"
@@ -25,6 +26,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -77,6 +79,18 @@ Image read_reference(const std::string &file, const SceneDescription &scene) {
     return image;
 }
 
+// The kernels of all strategies whose names say nothing else: of one kind, so that their times compare. --specialise
+// auto decides by the paths that the points of one strategy and its image ask for, for all devices.
+std::string kernel_of(const SweepRecord &r, const SceneDescription &scene, const std::vector<DevicePick> &devices) {
+    const Crop window = scene.camera.window();
+    const double spp = double(r.replicates) * std::accumulate(r.spp.begin(), r.spp.end(), 0.0) + r.spp.back(),
+                 paths = double(window.width) * window.height * spp;
+    Strategy strategy = scene.strategy;
+    strategy.few_paths = std::ranges::all_of(
+        devices, [&](const DevicePick &device) { return suits_general_kernel(device.info, paths); });
+    return strategy.is_general() ? "general" : "special";
+}
+
 SweepRecord fresh_record(const Options &o, const SceneDescription &scene, const std::vector<DevicePick> &devices) {
     SweepRecord r;
     r.version = OPAL_VERSION;
@@ -100,6 +114,7 @@ SweepRecord fresh_record(const Options &o, const SceneDescription &scene, const 
     std::sort(r.spp.begin(), r.spp.end());
     r.spp.erase(std::unique(r.spp.begin(), r.spp.end()), r.spp.end());
     r.budget = o.budget.empty() ? 0 : parse_seconds(o.budget);
+    r.kernel = kernel_of(r, scene, devices);
     return r;
 }
 
@@ -150,8 +165,11 @@ void write_results(const SweepRecord &record, const std::filesystem::path &folde
 int run_part(SweepPart part, const SweepPlan &plan, const DevicePick &pick, const std::vector<Candidate> &candidates,
              SweepRecord &record) {
     const Device device = open_device(pick.info);
-    if (part != SweepPart::images)
+    if (part != SweepPart::images) {
         info(fmt::format("device  {}: {}", pick.info.index, text_of(pick)));
+        info(fmt::format("kernel  {}",
+                         record.kernel == "general" ? "the general one, for all strategies" : "one for each strategy"));
+    }
     watch_interrupts();
     try {
         run_sweep(plan, device, candidates, record, part);
@@ -205,12 +223,14 @@ int sweep(const Options &o, SceneDescription scene, const std::filesystem::path 
         plan.reference = &reference;
     }
     const std::vector<DevicePick> devices = pick_devices(o);
-    const std::vector<Candidate> candidates = cross(strategies, devices);
+    std::vector<Candidate> candidates = cross(strategies, devices);
     const SweepRecord fresh = fresh_record(o, scene, devices);
     make_folder(plan.folder);
     record = resume(plan.folder, fresh);
-    for (const Candidate &c : candidates) // all rows at once, as references to them are kept
+    for (Candidate &c : candidates) { // all rows at once, as references to them are kept
         record.strategy(c.name, c.label).device = c.device;
+        c.scene.strategy.few_paths = record.kernel == "general";
+    }
     save(record, plan.folder); // fails early if the folder cannot be written
     if (devices.size() == 1) {
         if (const int code = run_part(SweepPart::all, plan, devices[0], candidates, record))
@@ -241,6 +261,7 @@ nlohmann::json report_of(const SweepRecord &record, const SweepSummary &summary,
                    {"definitions", record.definitions},
                    {"devices", devices},
                    {"clock", record.clock},
+                   {"kernel", record.kernel},
                    {"width", record.width},
                    {"height", record.height},
                    {"replicates", record.replicates},

@@ -19,8 +19,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StrategyRecord, name, label, device, lanes, i
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReferenceRecord, made_by, spp, seconds, mean_luminance, stderr_luminance,
                                    variance_known, mean_square)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SweepRecord, version, scene, scene_hash, dialect, definitions, reference_file, clock,
-                                   devices, width, height, crop, command, integrator, replicates, spp, left_out_spp,
-                                   budget, reference, strategies)
+                                   devices, width, height, crop, kernel, command, integrator, replicates, spp,
+                                   left_out_spp, budget, reference, strategies)
 
 StrategyRecord &SweepRecord::strategy(const std::string &name, const std::string &label) {
     for (StrategyRecord &s : strategies)

@@ -65,6 +65,9 @@ struct SweepRecord {
     int width = 0, height = 0; // of the whole image
     std::string crop;          // the part that is rendered, in words; empty: all
     // In these it may differ.
+    // The kernels of all strategies whose names say nothing else: general or special. A sweep that is continued goes on
+    // with the kernels that it began with.
+    std::string kernel;
     std::string command, integrator;
     unsigned replicates = 0;
     std::vector<unsigned> spp, left_out_spp; // measured, and left out for the budget; ascending

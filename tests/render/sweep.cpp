@@ -312,3 +312,28 @@ TEST_CASE("A renderer of a sweep renders what a new one does", "[sweep]") {
     CHECK(used.render(16, 7).film.sum == fresh().render(16, 7).film.sum);
     CHECK(used.render(4, 7).film.sum == fresh().render(4, 7).film.sum);
 }
+
+TEST_CASE("A sweep says which kernels it measured, and goes on with them", "[sweep]") {
+    const SceneFolder folder;
+    const bool cpu = device().info.type != "gpu";
+    const auto sweep = [&](const std::string &how) {
+        const Outcome outcome =
+            folder.sweep("--strategies lighting=emitter lighting=mis --spp 2 --json out.json -o out " + how);
+        INFO(outcome.err);
+        REQUIRE(outcome.exit_code == 0);
+        const std::string said = nlohmann::json::parse(read_text(folder.scratch / "out.json"))["kernel"];
+        CHECK(folder.record()["kernel"] == said);
+        const bool on_page = count(read_text(folder.scratch / "out/index.html"), "--specialise on</code> measures") > 0;
+        CHECK(on_page == (said == "general"));
+        return said;
+    };
+    CHECK(sweep("--replicates 2") == (cpu ? "general" : "special")); // few paths
+    nlohmann::json begun = folder.record();
+    begun["kernel"] = "special";
+    folder.scratch.write("out/sweep.json", begun.dump());
+    CHECK(sweep("--replicates 3") == "special");
+    std::filesystem::remove_all(folder.scratch / "out");
+    CHECK(sweep("--replicates 2 --specialise on") == "special");
+    std::filesystem::remove_all(folder.scratch / "out");
+    CHECK(sweep("--replicates 2 --specialise off") == "general");
+}
