@@ -59,7 +59,7 @@ static Ray same_ray(Ray ray, mask always) {
 }
 
 // A pair of random words by another sampler than the independent one.
-CALLED static u2 bits_of_set(const Scene *scene, Sampler s, uints dimension) {
+static CALLED u2 bits_of_set(const Scene *scene, Sampler s, uints dimension) {
     uint seed = scene->settings->seed;
     if (CHOSEN(scene, sampler, sobol)) return sobol_pair(s, dimension, seed);
     return stratified_pair(s, dimension, scene->settings->spp, seed);

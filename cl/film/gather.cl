@@ -1,4 +1,7 @@
-// gather: the kernel that adds a pass's samples to the film.
+// gather: the kernels that add a pass's samples to the film, whose memory is cut into bands of consecutive pixels. A
+// work-item adds LANES pixels of a band, one sample after the other; those past the band's end do nothing.
+//   band_first   the band's first pixel in the film
+//   empty        not 0: nothing was added to the band yet, and its memory holds anything
 #include "cameras/interface.cl"
 #include "core/lanes.cl"
 #include "core/math.cl"
@@ -17,13 +20,13 @@ static v3 sample_color(global const float *samples, uints pixel, uint s, uint pa
                  GATHER_WORD(real, (sample + 2), word));
 }
 
-// Counts the samples that are neither finite nor empty, and records pixel and index of the first few.
-static void note_invalid(global const float *samples, FilmPlace at, mask valid, uint s, uint pass_first,
-                         uint pass_samples, volatile global uint *invalid) {
+// Counts the samples that are neither finite nor empty, and records pixel (of the film) and index of the first few.
+static void note_invalid(global const float *samples, FilmPlace at, uint band_first, mask valid, uint s,
+                         uint pass_first, uint pass_samples, volatile global uint *invalid) {
     int ok[LANES];
     STORE(to_ints(valid), ok);
     for (uint lane = 0; lane < LANES && at.first + lane < at.pixels; lane++) {
-        uint pixel = at.first + lane;
+        uint pixel = band_first + at.first + lane;
         ulong sample = (ulong)pixel * pass_samples + s;
         if (ok[lane] || as_uint(samples[OPAL_SAMPLE_FLOATS * sample]) == OPAL_SAMPLE_EMPTY) continue;
         uint record = atomic_inc(invalid);
@@ -34,17 +37,22 @@ static void note_invalid(global const float *samples, FilmPlace at, mask valid, 
     }
 }
 
-// Adds each pixel's own samples, for the box filter and for statistics.
-static void gather_own(FilmPlace at, global const float *samples, global float *film, global uint *counts,
-                       volatile global uint *invalid, uint pass_first, uint pass_samples) {
+// Adds each pixel's own samples, for the box filter and for statistics. invalid: how many samples are not finite, then
+// pixel and index of the first OPAL_INVALID_RECORDS
+kernel void gather(global const Settings *settings, global const float *samples, uint pass_first, uint pass_samples,
+                   uint band_first, uint band_pixels, uint empty, global float *film, global uint *counts,
+                   volatile global uint *invalid) {
+    FilmPlace at = film_place(band_pixels, empty);
+    if (at.first >= at.pixels) return;
     Sum sums[3], squares[4];
     for (uint c = 0; c < 3; c++) sums[c] = film_load(film, at, FILM_SUM + c, FILM_SUM_LOW + c);
     for (uint c = 0; c < 4; c++) squares[c] = film_load(film, at, FILM_SQUARES + c, FILM_SQUARES_LOW + c);
-    uints count = GATHER_WORD(uints, counts, at.pixel);
+    uints count = (uints)(0);
+    if (!at.empty) count = GATHER_WORD(uints, counts, at.pixel);
     for (uint s = 0; s < pass_samples; s++) {
-        v3 c = sample_color(samples, at.pixel, s, pass_samples);
+        v3 c = sample_color(samples, band_first + at.pixel, s, pass_samples);
         mask valid = is_finite(c);
-        if (ANY(!valid)) note_invalid(samples, at, valid, s, pass_first, pass_samples, invalid);
+        if (ANY(!valid)) note_invalid(samples, at, band_first, valid, s, pass_first, pass_samples, invalid);
         sums[0] = sum_add(sums[0], c.x, valid);
         sums[1] = sum_add(sums[1], c.y, valid);
         sums[2] = sum_add(sums[2], c.z, valid);
@@ -61,15 +69,17 @@ static void gather_own(FilmPlace at, global const float *samples, global float *
     for (uint lane = 0; lane < LANES && at.first + lane < at.pixels; lane++) counts[at.first + lane] = count_of[lane];
 }
 
-// Adds the samples of all pixels within the filter's radius, weighted by the filter.
-static void gather_around(FilmPlace at, global const Settings *settings, global const float *samples,
-                          global float *film, uint pass_first, uint pass_samples) {
+// For wide filters: adds the samples of all pixels within the filter's radius, weighted by the filter.
+kernel void gather_around(global const Settings *settings, global const float *samples, uint pass_first,
+                          uint pass_samples, uint band_first, uint band_pixels, uint empty, global float *weighted) {
+    FilmPlace at = film_place(band_pixels, empty);
+    if (at.first >= at.pixels) return;
     Scene scene = {settings}; // film_offset reads no table
     uint width = settings->film.width, height = settings->film.height;
     Sum sums[4];
-    for (uint c = 0; c < 4; c++) sums[c] = film_load(film, at, FILM_WEIGHTED + c, FILM_WEIGHTED_LOW + c);
+    for (uint c = 0; c < 4; c++) sums[c] = film_load(weighted, at, FILM_WEIGHTED + c, FILM_WEIGHTED_LOW + c);
     int reach = (int)ceil(settings->filter_radius - 0.5f);
-    uints x = at.pixel % width, y = at.pixel / width;
+    uints of_film = band_first + at.pixel, x = of_film % width, y = of_film / width;
     for (uint s = 0; s < pass_samples; s++)
         for (int dy = -reach; dy <= reach; dy++)
             for (int dx = -reach; dx <= reach; dx++) {
@@ -87,20 +97,5 @@ static void gather_around(FilmPlace at, global const Settings *settings, global 
                 sums[2] = sum_add(sums[2], w * c.z, valid);
                 sums[3] = sum_add(sums[3], w, valid);
             }
-    for (uint c = 0; c < 4; c++) film_store(film, at, FILM_WEIGHTED + c, FILM_WEIGHTED_LOW + c, sums[c]);
-}
-
-// Adds a pass to the film. A work-item adds LANES pixels, one sample after the other. invalid: how many samples are not
-// finite, then pixel and index of the first OPAL_INVALID_RECORDS
-kernel void gather(global const Settings *settings, global const float *samples, global float *film,
-                   global uint *counts, volatile global uint *invalid, uint pass_first, uint pass_samples) {
-    FilmPlace at;
-    at.pixels = settings->film.width * settings->film.height;
-    at.first = (uint)get_global_id(0) * LANES;
-    if (at.first >= at.pixels) return;
-    uint index[LANES];
-    for (uint lane = 0; lane < LANES; lane++) index[lane] = min(at.first + lane, at.pixels - 1);
-    at.pixel = LOAD(uints, index);
-    gather_own(at, samples, film, counts, invalid, pass_first, pass_samples);
-    if (OPAL_HAS_wide_filter) gather_around(at, settings, samples, film, pass_first, pass_samples);
+    for (uint c = 0; c < 4; c++) film_store(weighted, at, FILM_WEIGHTED + c, FILM_WEIGHTED_LOW + c, sums[c]);
 }

@@ -6,16 +6,6 @@
 #include "core/lanes.cl"
 #include "shared/types.h"
 
-// The film's pixel of the image's pixel y * width + x. The film holds a window of the image, and random numbers are
-// drawn by the pixel of the image, so that a crop shows what the whole image shows there.
-static uints film_pixel(global const Settings *settings, uints pixel) {
-    PixelWindow film = settings->film;
-    uint width = settings->width;
-    if (film.width == width) return pixel - film.top * width;
-    uints y = pixel / width, x = pixel - y * width;
-    return (y - film.top) * film.width + (x - film.left);
-}
-
 typedef struct { real hi, lo; } Sum;
 
 // Adds x in the lanes of `valid`.
@@ -31,11 +21,25 @@ static Sum sum_add(Sum s, real x, mask valid) {
     return r;
 }
 
-// LANES pixels from `first` on. Lanes beyond the last pixel of the image repeat it and are not stored.
-typedef struct { uints pixel; uint first, pixels; } FilmPlace;
+// LANES pixels of a band from its pixel `first` on. Lanes beyond the band's last pixel repeat it and are not stored.
+typedef struct {
+    uints pixel;
+    uint first, pixels; // `pixels`: of the band
+    bool empty;         // nothing was added to the band yet, and its memory holds anything
+} FilmPlace;
+
+static FilmPlace film_place(uint pixels, uint empty) {
+    FilmPlace at = {(uints)(0), (uint)get_global_id(0) * LANES, pixels, empty != 0};
+    uint index[LANES];
+    for (uint lane = 0; lane < LANES; lane++) index[lane] = min(at.first + lane, pixels - 1);
+    at.pixel = LOAD(uints, index);
+    return at;
+}
 
 // The sum in the planes `plane` and `low` (FILM_*).
 static Sum film_load(global const float *film, FilmPlace at, uint plane, uint low) {
+    Sum none = {(real)(0), (real)(0)};
+    if (at.empty) return none;
     global const float *hi = film + (ulong)plane * at.pixels, *lo = film + (ulong)low * at.pixels;
     Sum s = {GATHER_WORD(real, hi, at.pixel), GATHER_WORD(real, lo, at.pixel)};
     return s;

@@ -62,7 +62,7 @@ static Surface surface_met(const Scene *scene, const Path *path, Hit hit, mask o
 
 // Radiance of the lights that the path's rays meet, where they hit the surface s or, in lanes without a hit, leave the
 // scene; times the MIS weight of meeting it by a BSDF sample. 0 in lanes that are not active.
-CALLED static v3 light_met(const Scene *scene, const Path *path, const Surface *s, mask hit, mask active) {
+static CALLED v3 light_met(const Scene *scene, const Path *path, const Surface *s, mask hit, mask active) {
     v3 none = v3_all((real)(0));
     if (MET_KINDS == 0) return none;
     mask met;
@@ -163,7 +163,7 @@ static mask scatter(const Scene *scene, Path *path, const Surface *s, BsdfSample
 // by_bsdf the next segment. The BSDF is asked once for both; lobe: the first number of DIM_LOBE. Sets *direct, whose
 // visibility is tested later, by visible_light, so that a processor works at this and at the next segment at the same
 // time. Returns the lanes of by_bsdf whose path still carries something.
-CALLED static mask interact(const Scene *scene, Path *path, const Surface *s, mask by_light, mask by_bsdf, real lobe,
+static CALLED mask interact(const Scene *scene, Path *path, const Surface *s, mask by_light, mask by_bsdf, real lobe,
                      DirectLight *direct) {
     v3 wo;
     LightSample light = sample_light(scene, path, s, by_light, &wo);

@@ -33,9 +33,7 @@
     /* a tree of the other triangles, walked lane by lane */ \
     OPAL_FEATURE_ROW(tree, "tree") \
     /* the tree is larger than a core's caches: walks prefetch waiting children */ \
-    OPAL_FEATURE_ROW(large_tree, "large_tree") \
-    /* the pixel filter reaches beyond its pixel */ \
-    OPAL_FEATURE_ROW(wide_filter, "wide_filter")
+    OPAL_FEATURE_ROW(large_tree, "large_tree")
 
 #define OPAL_FEATURE_ROW(name, shown) FEATURE_##name,
 enum { OPAL_FEATURES FEATURE_COUNT };

@@ -1,11 +1,4 @@
-// queue: the samples of a work-item, and the ones that are finished. one_lane/ and many_lanes/path_starts.cl start
-// their paths.
-#include "core/lanes.cl"
-#include "film/sums.cl"
-#include "integrators/steps.cl"
-#include "scene.cl"
-#include "shared/counters.h"
-#include "shared/film.h"
+// queue: the samples of a work-item, in the order in which they are rendered.
 #include "shared/types.h"
 
 // The samples of a work-item: pixels of its tile, row by row, each with `samples` samples from first_sample on.
@@ -44,33 +37,5 @@ static void advance(Queue *queue) {
             queue->x = queue->left;
             queue->y++;
         }
-    }
-}
-
-// Stores the radiance of the `ended` paths, a bit each, as finished samples. In counting builds the sample of the first
-// one gets counters instead: the rays, shadow rays and rounds since a path ended before; the others get 0.
-static void retire(const Scene *scene, global float *samples, const Queue *queue, const Path *path, uint ended) {
-    uint place[LANES];
-    real1 r[LANES], g[LANES], b[LANES];
-    uints pixel = film_pixel(scene->settings, path->sampler.pixel);
-    STORE(pixel * queue->pass_samples + (path->sampler.sample - queue->pass_first), place);
-    STORE(path->radiance.x, r);
-    STORE(path->radiance.y, g);
-    STORE(path->radiance.z, b);
-    if (OPAL_COUNT_TESTS) {
-        STORE((real)(0), r);
-        STORE((real)(0), g);
-        STORE((real)(0), b);
-        r[lowest_lane(ended)] = scene->counters[COUNTER_rays];
-        g[lowest_lane(ended)] = scene->counters[COUNTER_shadow_rays];
-        b[lowest_lane(ended)] = scene->counters[COUNTER_rounds];
-        for (uint k = 0; k < COUNTERS; k++) scene->counters[k] = 0;
-    }
-    for (; ended; ended &= ended - 1) {
-        int lane = lowest_lane(ended);
-        global float *sample = samples + OPAL_SAMPLE_FLOATS * (ulong)place[lane];
-        sample[0] = r[lane];
-        sample[1] = g[lane];
-        sample[2] = b[lane];
     }
 }

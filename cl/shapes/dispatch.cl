@@ -51,7 +51,7 @@ static BlockTest intersect_leaf(Leaf leaf, uint place, const LaneRay *ray) {
 
 // The surface that each active lane hit, of which there is one at least: a scene may have no surfaces. The others get
 // any that there is.
-CALLED static Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask active) {
+static CALLED Surface surface_at(const Scene *scene, Ray ray, Hit hit, mask active) {
 #define ONLY_SURFACE(name, Block) \
     if (OPAL_HAS_shape_##name && SHAPE_KINDS == 1) return surface_of_##name(scene, ray, hit, active);
     OPAL_SHAPES(ONLY_SURFACE)

@@ -7,15 +7,19 @@
 #define OPAL_INVALID_RECORDS 8          // so many samples that are not finite are recorded by pixel and index
 
 // The film's planes, one float a pixel each. A sum is a pair of floats: a plane, and the low part that it has lost to
-// rounding.
+// rounding. The film is cut into bands of consecutive pixels, each with memory of its own, because devices bound the
+// size of a buffer: plane by plane, and of wide filters the weighted sums apart.
 enum {
     FILM_SUM = 0,           // of r, g, b
     FILM_SUM_LOW = 3,
     FILM_SQUARES = 6,       // of r^2, g^2, b^2, luminance^2
     FILM_SQUARES_LOW = 10,
-    FILM_WEIGHTED = 14,     // wide filters: of w r, w g, w b, w
-    FILM_WEIGHTED_LOW = 18,
-    FILM_PLANES = 22
+    FILM_PLANES = 14
+};
+enum {
+    FILM_WEIGHTED = 0,      // wide filters: of w r, w g, w b, w
+    FILM_WEIGHTED_LOW = 4,
+    FILM_WEIGHTED_PLANES = 8
 };
 
 #endif

@@ -20,7 +20,7 @@ static bool has_tree(const Scene *scene) {
 }
 
 // The nearest hit of each active lane.
-CALLED static Hit closest_hit(const Scene *scene, Ray ray, mask active) {
+static CALLED Hit closest_hit(const Scene *scene, Ray ray, mask active) {
     Hit hit = no_hit(ray.tmax);
     if (OPAL_HAS_face_list) hit = faces_closest(scene, ray);
     if (!has_tree(scene)) return hit;
@@ -38,7 +38,7 @@ CALLED static Hit closest_hit(const Scene *scene, Ray ray, mask active) {
 }
 
 // The active lanes whose ray is blocked between tmin and tmax, by the tree or by the faces `among` of the face list.
-CALLED static mask blocked_by(const Scene *scene, Ray ray, FaceRange among, mask active) {
+static CALLED mask blocked_by(const Scene *scene, Ray ray, FaceRange among, mask active) {
     mask blocked = NO_LANES;
     if (OPAL_HAS_face_list && among.faces > 0) blocked = faces_any(scene, ray, among, active);
     if (!has_tree(scene)) return blocked;

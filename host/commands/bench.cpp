@@ -222,7 +222,7 @@ int run_renders(const RenderBenchOptions &o) {
             race(fmt::format("{} lane{}", lanes, lanes == 1 ? "" : "s"), flatten(scene, lanes), other).json();
     }
     SceneDescription anything = scene;
-    anything.strategy.specialise = false;
+    anything.strategy.specialise = Specialise::off;
     report["general"] = race("general kernel", flatten(anything, build.lanes), build).json();
     write_json(o.json, "bench render", report);
     return 0;

@@ -6,6 +6,7 @@
 namespace opal {
 
 Command bench_command();
+Command cache_command();
 Command compare_command();
 Command completion_command();
 Command devices_command();

@@ -9,6 +9,7 @@
 #include "flatten/features.h"
 #include "flatten/precision_warnings.h"
 #include "flatten/scene_warnings.h"
+#include "render/kernel_choice.h"
 #include "render/report.h"
 #include "scene/options.h"
 
@@ -180,8 +181,14 @@ void print_buffers(const FlatScene &flat) {
     print("  {:<18}{:>15} {:>12}\n", "in all", "", bytes_text(all));
 }
 
-void print_features(const Features &features) {
-    print("\nfeatures of the kernel\n");
+void print_features(const SceneDescription &scene, const Features &features) {
+    print("\nfeatures of {}\n", scene.strategy.is_general() ? "the general kernel" : "the scene's kernel");
+    if (scene.strategy.specialise == Specialise::automatic) {
+        print(
+            "  (on a CPU --specialise auto takes the general kernel for fewer than {:.3g} M paths; the scene asks for "
+            "{:.3g} M)\n",
+            1e-6 * paths_that_pay, 1e-6 * scene.camera.width * scene.camera.height * scene.spp);
+    }
     for (unsigned i = 0; i < FEATURE_COUNT; ++i)
         print("  {:<22}{:<5}{}\n", feature_name(i), features[i] ? "in" : "out", features.list[i].reason);
     print("\naxes of the kernel\n");
@@ -270,7 +277,7 @@ int run_inspect(const InspectOptions &options) {
     print_scene(scene, flat);
     print_strategy(scene, lanes);
     print_buffers(flat);
-    print_features(flat.features);
+    print_features(scene, flat.features);
     for (const std::string &line : scene_warnings(scene))
         warn(line);
     for (const std::string &line : precision_warnings(scene, flat))

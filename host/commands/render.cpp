@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "base/log.h"
+#include "base/progress.h"
 #include "base/signals.h"
 #include "base/units.h"
 #include "commands/commands.h"
@@ -10,6 +11,7 @@
 #include "commands/options.h"
 #include "flatten/flat_scene.h"
 #include "flatten/scene_warnings.h"
+#include "render/kernel_choice.h"
 #include "render/render_film.h"
 #include "render/report.h"
 #include "scene/options.h"
@@ -21,6 +23,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <future>
 
 namespace opal {
 
@@ -58,8 +61,9 @@ void tell_what_runs(const SceneDescription &scene, const FlatScene &flat, const 
                      count(flat.triangles.size(), "triangle"), count(flat.emitters.size(), "emitter"),
                      text_of(scene.camera.window()), scene.spp, seed));
     info("how     " + strategy);
-    info(fmt::format("device  {}, {} lane{}, math {}", text_of(pick), lanes, lanes == 1 ? "" : "s",
-                     name_of(scene.strategy.math)));
+    info(fmt::format("device  {}, {} lane{}, math {}, {}", text_of(pick), lanes, lanes == 1 ? "" : "s",
+                     name_of(scene.strategy.math),
+                     scene.strategy.is_general() ? "the general kernel" : "a kernel for this scene"));
 }
 
 StopRule stop_rule(const Options &o) {
@@ -175,21 +179,26 @@ Request prepare(const Options &o) {
     return request;
 }
 
+// Writes the files side by side.
 void write_image(const Image &image, const ImageFiles &files, const Display &display) {
+    const RunningProgress progress("writing");
+    std::future<void> png;
+    if (!files.png.empty())
+        png = std::async(std::launch::async, [&] { write_png(image, files.png, display); });
     if (files.to_stdout)
         print_text(exr_bytes(image));
     if (!files.exr.empty())
         write_exr(image, files.exr);
-    if (!files.png.empty())
-        write_png(image, files.png, display);
+    if (png.valid())
+        png.get(); // throws what write_png threw
 }
 
 // Writes the image with the report in its header, and tells the result. Returns the exit code.
-int report(const Request &request, const RenderedFilm &rendered, const RenderReport &render,
+int report(const Request &request, RenderedFilm &rendered, const RenderReport &render,
            const std::optional<AutoChoice> &choice, bool variance) {
     for (const std::string &line : film_warnings(render))
         warn(line);
-    Image image = image_of(rendered.film, variance);
+    Image image = take_image(rendered.film, variance);
     nlohmann::json json = render.json();
     const StopReport stop = report_stop(request.rule, rendered.stopped, render);
     if (choice)
@@ -218,6 +227,19 @@ int report(const Request &request, const RenderedFilm &rendered, const RenderRep
     return interrupt_exit_code();
 }
 
+// The paths that are asked, for suits_general_kernel. A goal for the error asks for as many as it takes.
+double paths_asked(const Request &request) {
+    if (request.rule.relative_error > 0)
+        return INFINITY;
+    const Crop window = request.scene.camera.window();
+    const double pixels = double(window.width) * window.height;
+    double paths = request.spp ? pixels * request.spp : INFINITY;
+    for (const double seconds : {request.rule.seconds, request.rule.wall_seconds})
+        if (seconds > 0)
+            paths = std::min(paths, paths_in(seconds));
+    return paths;
+}
+
 int render_scene(const Options &o) {
     Request request = prepare(o);
     SceneDescription &scene = request.scene;
@@ -230,13 +252,14 @@ int render_scene(const Options &o) {
         info(choice->text());
         scene.strategy = choice->strategy;
     }
+    scene.strategy.few_paths = suits_general_kernel(pick.info, paths_asked(request));
     const Stopwatch bvh;
     FlatScene flat = flatten_and_free(scene, build.lanes);
     const double bvh_seconds = bvh.seconds();
     tell_what_runs(scene, flat, pick, build.lanes, o.seed);
     if (build.math == MathMode::fast)
         warn_of_fast_functions(device, build, sources);
-    const RenderedFilm rendered =
+    RenderedFilm rendered =
         render_film(device, std::move(flat), {.build = build, .sources = &sources}, request.rule, o.seed, request.spp);
     const RenderSeconds seconds = {.load = request.load_seconds,
                                    .bvh = bvh_seconds,

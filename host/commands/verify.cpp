@@ -11,6 +11,7 @@
 #include "commands/vary.h"
 #include "compare/agreement.h"
 #include "flatten/features.h"
+#include "render/kernel_choice.h"
 #include "render/renderer.h"
 
 #include <fmt/format.h>
@@ -140,8 +141,9 @@ int verify(const Options &o, SceneDescription scene, const std::filesystem::path
            nlohmann::json &report) {
     simplify_image(scene.camera, o);
     scene.spp = strata;
-    const std::vector<NamedStrategy> strategies = choose(scene, o);
     const DevicePick pick = choose_device(o.device);
+    scene.strategy.few_paths = suits_general_kernel(pick.info, paths_in(o.budget));
+    const std::vector<NamedStrategy> strategies = choose(scene, o);
     info(fmt::format("verify  {}: {} strategies, {} x {} pixels, {} in all, seed {}", scene.file.string(),
                      strategies.size(), scene.camera.width, scene.camera.height, duration_text(o.budget), o.seed));
     info(fmt::format("device  {}", text_of(pick)));

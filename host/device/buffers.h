@@ -54,4 +54,18 @@ template <class T> std::vector<T> read_buffer(const Device &device, const cl::Bu
     return rows;
 }
 
+// Calls read(elements) with the first `count` elements after everything queued before has run. A CPU device gives its
+// own memory, without a copy.
+template <class T, class Read>
+void read_mapped(const Device &device, const cl::Buffer &buffer, size_t count, Read read) {
+    const cl::CommandQueue &queue = device.handles->queue;
+    void *const memory = with_device(
+        device.info, [&] { return queue.enqueueMapBuffer(buffer, CL_TRUE, CL_MAP_READ, 0, sizeof(T) * count); });
+    read(static_cast<const T *>(memory));
+    with_device(device.info, [&] {
+        queue.enqueueUnmapMemObject(buffer, memory);
+        return queue.finish();
+    });
+}
+
 } // namespace opal

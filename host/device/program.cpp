@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 
@@ -34,6 +35,15 @@ std::string log_of(const cl::Program &program, const cl::Device &device) {
 
 cl::Program build_program(const Device &device, const std::string &text, const BuildOptions &options, double *seconds) {
     const auto start = std::chrono::steady_clock::now();
+    auto &programs = device.handles->programs;
+    const std::string key = build_flags(options) + '\n' + text;
+    if (const auto known = std::ranges::find(programs, key, &std::pair<std::string, cl::Program>::first);
+        known != programs.end() && options.cache_salt.empty()) {
+        std::rotate(programs.begin(), known, known + 1);
+        if (seconds)
+            *seconds = 0;
+        return programs.front().second;
+    }
     cl::Program program = with_device(device.info, [&] { return cl::Program(device.handles->context, text); });
     try {
         program.build({device.handles->device}, build_flags(options).c_str());
@@ -48,6 +58,9 @@ cl::Program build_program(const Device &device, const std::string &text, const B
                        build_flags(options), log_of(program, device.handles->device)));
     if (seconds)
         *seconds = taken;
+    constexpr size_t most_programs = 4; // a renderer has two
+    programs.insert(programs.begin(), {key, program});
+    programs.resize(std::min(programs.size(), most_programs));
     return program;
 }
 

@@ -83,7 +83,7 @@ const WarpCase warp_cases[] = {{WARP_tent, 0},
 FlatScene scene_of_everything() {
     SceneDescription scene = room();
     scene.meshes.push_back(light(cube({0.6, 0.6, 0.6}, 0.1, false), 1));
-    scene.strategy.specialise = false;
+    scene.strategy.specialise = Specialise::off;
     return flatten(scene, 1);
 }
 
@@ -208,8 +208,9 @@ unsigned long long lost_at_edges(double scale, unsigned long long rays, const De
             SceneDescription scene =
                 moved(mesh.scene, Transform::translate(Vec3{unit() - 0.5, unit() - 0.5, unit() - 0.5} * (1e4 * size)) *
                                       Transform::scale({size, size, size}) * rotation);
-            scene.strategy.specialise = mesh.listed;
-            KernelProbe probe = probe_of(flatten(scene, lanes_for(device.info, 0, math)), device, settings, math);
+            scene.strategy.specialise = mesh.listed ? Specialise::on : Specialise::off;
+            KernelProbe probe =
+                probe_of(flatten(scene, lanes_for(device.info, 0, math), mesh.listed), device, settings, math);
             lost += edges::lost_rays(probe, batch, random);
             done += batch;
         }

@@ -74,4 +74,14 @@ Image image_of(const Film &film, bool variance) {
     return image;
 }
 
+Image take_image(Film &film, bool variance) {
+    Image image = image_of(film, variance);
+    Film freed;
+    std::swap(film.sum, freed.sum);
+    std::swap(film.squares, freed.squares);
+    std::swap(film.weighted, freed.weighted);
+    std::swap(film.count, freed.count);
+    return image;
+}
+
 } // namespace opal

@@ -40,5 +40,6 @@ FilmStatistics statistics_of(const Film &film);
 // The image with layers R, G, B (radiance) and, with `variance`, variance.R, .G, .B: the variance of each pixel's mean.
 // Pixels without samples are 0.
 Image image_of(const Film &film, bool variance);
+Image take_image(Film &film, bool variance); // the same; the film's sums, five times as large, are freed
 
 } // namespace opal

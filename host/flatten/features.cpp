@@ -130,17 +130,6 @@ public:
                 fmt::format("{:.1f} MiB of nodes and blocks", double(scene.tree_bytes()) / (1 << 20))};
     }
 
-    Decision wide_filter() const {
-        const Settings &settings = scene.settings;
-        static const char *const names[] = {
-#define OPAL_FILTER_NAME(name) #name,
-            OPAL_FILTERS(OPAL_FILTER_NAME)
-#undef OPAL_FILTER_NAME
-        };
-        return {settings.filter != FILTER_box || settings.filter_radius > 0.5f,
-                fmt::format("{} filter of radius {}", names[settings.filter], settings.filter_radius)};
-    }
-
 private:
     const SceneDescription &description;
     const FlatScene &scene;
@@ -231,7 +220,7 @@ Features find_features(const SceneDescription &description, const FlatScene &sce
     };
 
     Features features;
-    const bool specialise = description.strategy.specialise;
+    const bool specialise = !description.strategy.is_general();
     for (unsigned i = 0; i < FEATURE_COUNT; i++)
         features.list[i] = specialise ? Feature{decisions[i].on, decisions[i].reason}
                                       : Feature{general_has(i, lanes), "--specialise off"};

@@ -10,8 +10,8 @@ constexpr int FACE_LIST_LANES = 4; // from this width on testing each of a few t
 // A feature's name (FEATURE_*), as `opal inspect` prints it.
 const char *feature_name(unsigned feature);
 
-// Finds the features of a flat scene that is otherwise complete. Without strategy.specialise all features are on and
-// all axes are -1, decided at run time.
+// Finds the features of a flat scene that is otherwise complete. The general kernel has all features but those that
+// cost most scenes more than they save a few, and all axes are -1, decided at run time.
 Features find_features(const SceneDescription &description, const FlatScene &scene, int lanes);
 
 // The features of one kernel that renders all of these variants of a scene: a feature that any variant needs is on, and

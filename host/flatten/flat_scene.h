@@ -60,8 +60,14 @@ template <class Visit> void visit_bsdfs(const FlatScene &scene, uint at, Visit v
             visit_bsdfs(scene, scene.bsdfs[at + parameter.word], visit);
 }
 
+// Does the pixel filter reach beyond its pixel?
+inline bool is_wide_filter(const Settings &settings) {
+    return settings.filter != FILTER_box || settings.filter_radius > 0.5f;
+}
+
 // lanes: the width that the kernel will have; decides whether triangles are listed beside the tree.
-FlatScene flatten(const SceneDescription &scene, int lanes);
+// with_face_list: may they be? Tests of the tree say no.
+FlatScene flatten(const SceneDescription &scene, int lanes, bool with_face_list = true);
 
 // The same of a scene that is flattened once: each triangle mesh is freed as soon as it is gathered, and left empty.
 FlatScene flatten_and_free(SceneDescription &scene, int lanes);

@@ -129,7 +129,8 @@ void build_acceleration(TriangleSoup &soup, const std::optional<std::vector<Poin
     scene.bvh_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-FlatScene flatten(const SceneDescription &description, int lanes, const std::function<void(uint)> &on_gathered) {
+FlatScene flatten(const SceneDescription &description, int lanes, bool with_face_list,
+                  const std::function<void(uint)> &on_gathered) {
     FlatScene scene;
     const Extent extent = extent_of(description);
     const Flattening flattening = find_flattening(extent);
@@ -141,8 +142,8 @@ FlatScene flatten(const SceneDescription &description, int lanes, const std::fun
     fill_strategy(description, flattening, scene.settings);
     gather_bsdfs(description, scene);
     TriangleSoup soup = gather_primitives(description, flattening, scene, on_gathered);
-    build_acceleration(soup, light_points(description, flattening, soup, scene.triangles), lanes >= FACE_LIST_LANES,
-                       !description.strategy.specialise, scene);
+    build_acceleration(soup, light_points(description, flattening, soup, scene.triangles),
+                       with_face_list && lanes >= FACE_LIST_LANES, description.strategy.is_general(), scene);
     gather_emitters(description, flattening, extent.radius(), soup, scene);
     scene.features = find_features(description, scene, lanes);
     return scene;
@@ -158,12 +159,12 @@ std::size_t FlatScene::tree_bytes() const {
     return bytes;
 }
 
-FlatScene flatten(const SceneDescription &scene, int lanes) {
-    return flatten(scene, lanes, [](uint) {});
+FlatScene flatten(const SceneDescription &scene, int lanes, bool with_face_list) {
+    return flatten(scene, lanes, with_face_list, [](uint) {});
 }
 
 FlatScene flatten_and_free(SceneDescription &scene, int lanes) {
-    return flatten(scene, lanes, [&](uint i) {
+    return flatten(scene, lanes, true, [&](uint i) {
         if (auto *mesh = std::get_if<TriangleMesh>(&scene.meshes[i].shape))
             *mesh = {};
     });

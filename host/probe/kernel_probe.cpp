@@ -49,7 +49,7 @@ Planes corner_numbers() {
 
 FlatScene scene_of_bsdfs(const std::vector<Bsdf> &bsdfs) {
     SceneDescription description;
-    description.strategy.specialise = false;
+    description.strategy.specialise = Specialise::off;
     for (const Bsdf &bsdf : bsdfs) {
         description.meshes.emplace_back();
         description.meshes.back().bsdf = bsdf;

@@ -36,7 +36,7 @@ RenderedFilm render_film(const Device &device, FlatScene scene, const RenderOpti
             return !interrupted();
         });
     }
-    rendered.film = renderer.film();
+    rendered.film = renderer.take_film();
     rendered.compile_seconds = renderer.compile_seconds();
     rendered.kernel_seconds = renderer.kernel_seconds();
     return rendered;

@@ -5,6 +5,8 @@
 #include "device/scene_buffers.h"
 #include "shared/film.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <chrono>
@@ -20,6 +22,12 @@ namespace {
 constexpr unsigned long long sample_bytes = 4ull * OPAL_SAMPLE_FLOATS;
 constexpr unsigned long long max_sample_buffer_bytes = 256ull << 20,
                              max_buffer_samples = (1ull << 32) / OPAL_SAMPLE_FLOATS;
+// CPU: the film and the samples of a pass take about so many bytes a pixel. Small images may take more.
+constexpr unsigned long long cpu_bytes_a_pixel = 120, small_sample_buffer_bytes = 32ull << 20;
+
+// Pixels of a band of the film, whose sums are a buffer of 29 MB. PoCL compiles kernels apart for launches of more than
+// 65535 work-groups: at 8 lanes gathering has no more, as in small images.
+constexpr unsigned band_pixels = 8 * 65535;
 
 // A work-item renders one chunk of the samples of one tile. Tiles are cut into chunks for about so many work-items a
 // pass that all cores stay busy to its end.
@@ -44,11 +52,27 @@ std::vector<unsigned> spread_order(unsigned count) {
 
 } // namespace
 
+// The text is the same for all scenes, because it asks for no feature: wide filters draw by the settings' sampler.
+cl::Program build_film_program(const Device &device, const BuildOptions &options, const Sources &sources,
+                               double *seconds) {
+    Features features;
+    features.axes[AXIS_sampler] = -1;
+    const BuildOptions build{.lanes = options.lanes, .math = options.math, .kernels = "kernels/film.cl"};
+    return build_program(device, program_text(features, build, sources), build, seconds);
+}
+
+// Consecutive pixels of the film: planes of their sums, and of the filter's weighted sums where it is wide.
+struct Renderer::FilmBand {
+    size_t first = 0, pixels = 0;
+    cl::Buffer sums, counts, weighted;
+};
+
 struct Renderer::OnDevice {
     FlatScene tables; // that the buffers of `scene` may share
     std::vector<cl::Buffer> scene;
-    cl::Buffer samples, film, counts, invalid;
-    cl::Kernel render, gather, clear;
+    cl::Buffer samples, invalid;
+    std::vector<FilmBand> bands;
+    cl::Kernel render, gather, gather_around, clear;
 };
 
 Renderer::LaunchShape Renderer::launch_shape() const {
@@ -67,38 +91,52 @@ Renderer::LaunchShape Renderer::launch_shape() const {
 Renderer::Renderer(const Device &device, FlatScene scene, const RenderOptions &options)
     : device_(device), settings_(scene.settings), crop_(scene.crop), options_(options),
       pixels_(size_t(scene.settings.film.width) * scene.settings.film.height),
-      wide_filter_(scene.features[FEATURE_wide_filter]), on_device_(std::make_unique<OnDevice>()) {
+      wide_filter_(is_wide_filter(scene.settings)), on_device_(std::make_unique<OnDevice>()) {
     shape_ = launch_shape();
-    const unsigned long long bytes =
+    const unsigned long long film_bytes =
+        4ull * (FILM_PLANES + 1 + (wide_filter_ ? FILM_WEIGHTED_PLANES : 0)); // of a pixel; the 1 is its count
+    unsigned long long bytes =
         std::min({max_sample_buffer_bytes, device.info.max_allocation, sample_bytes * max_buffer_samples});
+    if (device.info.type == "cpu")
+        bytes = std::min(bytes, std::max(small_sample_buffer_bytes, pixels_ * (cpu_bytes_a_pixel - film_bytes)));
     buffer_spp_ = unsigned(
         std::clamp<unsigned long long>(bytes / sample_bytes / pixels_, 1, 1ull * max_samples_a_chunk * max_chunks));
-    check_room(device, pixels_ * (sample_bytes * buffer_spp_ + 4ull * FILM_PLANES + 4), "the film and its samples");
+    check_room(device, pixels_ * (film_bytes + sample_bytes * buffer_spp_),
+               fmt::format("the film of {} x {} pixels and its samples", settings_.film.width, settings_.film.height));
 
     const RunningProgress compiling("compile");
+    double film_seconds = 0;
     const cl::Program program = build_program(device, program_text(scene.features, options.build, *options.sources),
                                               options.build, &compile_seconds_);
+    const cl::Program film_program = build_film_program(device, options.build, *options.sources, &film_seconds);
     on_device_->tables = std::move(scene);
     on_device_->scene = upload_scene(device, on_device_->tables);
     if (!shares_memory(device))
         on_device_->tables = {};
     on_device_->samples =
         make_buffer(device, CL_MEM_READ_WRITE, pixels_ * sample_bytes * buffer_spp_, nullptr, "the samples of a pass");
-    on_device_->film = make_zeros<float>(device, pixels_ * FILM_PLANES, "the film");
-    on_device_->counts = make_zeros<cl_uint>(device, pixels_, "the film's sample counts");
     on_device_->invalid = make_zeros<cl_uint>(device, 1 + 2 * OPAL_INVALID_RECORDS, "the list of invalid samples");
+    for (size_t first = 0; first < pixels_; first += band_pixels) {
+        const size_t pixels = std::min<size_t>(band_pixels, pixels_ - first);
+        const auto planes = [&](unsigned count) { // gather writes them in the first pass
+            return make_buffer(device, CL_MEM_READ_WRITE, 4ull * count * pixels, nullptr, "a part of the film");
+        };
+        on_device_->bands.push_back({first, pixels, planes(FILM_PLANES), planes(1),
+                                     wide_filter_ ? planes(FILM_WEIGHTED_PLANES) : cl::Buffer()});
+    }
 
     with_device(device.info, [&] {
         on_device_->render = cl::Kernel(program, "render");
-        on_device_->gather = cl::Kernel(program, "gather");
-        on_device_->clear = cl::Kernel(program, "clear");
+        on_device_->gather = cl::Kernel(film_program, "gather");
+        on_device_->gather_around = cl::Kernel(film_program, "gather_around");
+        on_device_->clear = cl::Kernel(film_program, "clear");
         cl_uint argument = 0;
         for (const cl::Buffer &buffer : on_device_->scene)
             on_device_->render.setArg(argument++, buffer);
         return 0;
     });
     set_film_arguments();
-    compile_seconds_ += warm_up();
+    compile_seconds_ += film_seconds + warm_up();
 }
 
 Renderer::~Renderer() = default;
@@ -106,12 +144,11 @@ Renderer::~Renderer() = default;
 void Renderer::set_film_arguments() {
     with_device(device_.info, [&] {
         on_device_->render.setArg(cl_uint(on_device_->scene.size()), on_device_->samples);
-        on_device_->clear.setArg(0, on_device_->scene[0]);
-        on_device_->clear.setArg(1, on_device_->samples);
-        cl_uint argument = 0;
-        for (const cl::Buffer &buffer :
-             {on_device_->scene[0], on_device_->samples, on_device_->film, on_device_->counts, on_device_->invalid})
-            on_device_->gather.setArg(argument++, buffer);
+        for (cl::Kernel *kernel : {&on_device_->clear, &on_device_->gather, &on_device_->gather_around}) {
+            kernel->setArg(0, on_device_->scene[0]);
+            kernel->setArg(1, on_device_->samples);
+        }
+        on_device_->gather.setArg(9, on_device_->invalid);
         return 0;
     });
 }
@@ -119,8 +156,7 @@ void Renderer::set_film_arguments() {
 void Renderer::share_film(const Renderer &other) {
     assert(pixels_ == other.pixels_ && buffer_spp_ == other.buffer_spp_);
     on_device_->samples = other.on_device_->samples;
-    on_device_->film = other.on_device_->film;
-    on_device_->counts = other.on_device_->counts;
+    on_device_->bands = other.on_device_->bands;
     on_device_->invalid = other.on_device_->invalid;
     set_film_arguments();
 }
@@ -141,11 +177,10 @@ double Renderer::warm_up() {
 void Renderer::restart(unsigned seed, unsigned first_sample) {
     settings_.seed = seed;
     next_sample_ = first_sample;
+    empty_ = true;
     kernel_seconds_ = 0;
     with_device(device_.info, [&] {
         device_.handles->queue.enqueueWriteBuffer(on_device_->scene[0], CL_TRUE, 0, sizeof settings_, &settings_);
-        device_.handles->queue.enqueueFillBuffer(on_device_->film, cl_uint(0), 0, pixels_ * FILM_PLANES * 4);
-        device_.handles->queue.enqueueFillBuffer(on_device_->counts, cl_uint(0), 0, pixels_ * 4);
         device_.handles->queue.enqueueFillBuffer(on_device_->invalid, cl_uint(0), 0,
                                                  (1 + 2 * OPAL_INVALID_RECORDS) * 4ull);
         return device_.handles->queue.finish();
@@ -206,12 +241,29 @@ bool Renderer::render_pass(unsigned samples, const OnLaunch &on_launch) {
         done += std::min(shape_.items_a_launch, items - first);
         stopped = on_launch && !on_launch(next_sample_ + samples * double(done) / items, kernel_seconds_);
     }
-    on_device_->gather.setArg(5, cl_uint(next_sample_));
-    on_device_->gather.setArg(6, cl_uint(samples));
-    launch(on_device_->gather, ceil_div(unsigned(pixels_), unsigned(options_.build.lanes)));
+    gather(samples);
     seconds_a_sample_ = seconds / samples;
     next_sample_ += samples;
     return !stopped;
+}
+
+// Adds the pass, `samples` of each pixel from next_sample_ on, to all bands.
+void Renderer::gather(unsigned samples) {
+    const unsigned items = ceil_div(unsigned(std::min<size_t>(band_pixels, pixels_)), unsigned(options_.build.lanes));
+    for (const FilmBand &band : on_device_->bands) {
+        const auto launch_kernel = [&](cl::Kernel &kernel, std::initializer_list<cl::Buffer> film) {
+            cl_uint argument = 2; // after the settings and the samples
+            for (const size_t value : {size_t(next_sample_), size_t(samples), band.first, band.pixels, size_t(empty_)})
+                kernel.setArg(argument++, cl_uint(value));
+            for (const cl::Buffer &buffer : film)
+                kernel.setArg(argument++, buffer);
+            launch(kernel, items); // of one shape, whatever the band's size
+        };
+        launch_kernel(on_device_->gather, {band.sums, band.counts});
+        if (wide_filter_)
+            launch_kernel(on_device_->gather_around, {band.weighted});
+    }
+    empty_ = false;
 }
 
 bool Renderer::render(unsigned end, const OnLaunch &on_launch) {
@@ -223,40 +275,66 @@ bool Renderer::render(unsigned end, const OnLaunch &on_launch) {
     });
 }
 
-// The pixel of the device's film that pixel `p` of the image is: the film is larger by what wide filters need around a
-// crop.
-size_t Renderer::film_pixel(size_t p) const {
+// Calls visit(pixel of the band) for the band's pixels that are shown, in their order: the device's film is larger than
+// the image by what wide filters need around a crop.
+template <class Visit> void Renderer::visit_shown(const FilmBand &band, Visit visit) const {
     const PixelWindow &film = settings_.film;
-    const size_t x = size_t(crop_.x) - film.left + p % size_t(crop_.width),
-                 y = size_t(crop_.y) - film.top + p / size_t(crop_.width);
-    return y * film.width + x;
+    const size_t left = size_t(crop_.x) - film.left, top = size_t(crop_.y) - film.top;
+    const size_t end = band.first + band.pixels, bottom = std::min(top + size_t(crop_.height), end / film.width + 1);
+    for (size_t y = std::max(top, band.first / film.width); y < bottom; y++) {
+        const size_t row = y * film.width + left;
+        for (size_t p = std::max(row, band.first); p < std::min(row + size_t(crop_.width), end); p++)
+            visit(p - band.first);
+    }
 }
 
-Film Renderer::film() const {
+// Adds the band's pixels to the end of `film`.
+void Renderer::read_band(const FilmBand &band, Film &film) const {
+    const auto sum = [&](const float *planes, unsigned plane, unsigned low, size_t pixel) { // hi + lo
+        return double(planes[plane * band.pixels + pixel]) + double(planes[low * band.pixels + pixel]);
+    };
+    read_mapped<cl_uint>(device_, band.counts, band.pixels, [&](const cl_uint *counts) {
+        visit_shown(band, [&](size_t pixel) { film.count.push_back(counts[pixel]); });
+    });
+    read_mapped<float>(device_, band.sums, FILM_PLANES * band.pixels, [&](const float *planes) {
+        visit_shown(band, [&](size_t pixel) {
+            auto &own = film.sum.emplace_back();
+            for (unsigned c = 0; c < 3; c++)
+                own[c] = sum(planes, FILM_SUM + c, FILM_SUM_LOW + c, pixel);
+            auto &squares = film.squares.emplace_back();
+            for (unsigned c = 0; c < 4; c++)
+                squares[c] = sum(planes, FILM_SQUARES + c, FILM_SQUARES_LOW + c, pixel);
+        });
+    });
+    if (wide_filter_)
+        read_mapped<float>(device_, band.weighted, FILM_WEIGHTED_PLANES * band.pixels, [&](const float *planes) {
+            visit_shown(band, [&](size_t pixel) {
+                auto &weighted = film.weighted.emplace_back();
+                for (unsigned c = 0; c < 4; c++)
+                    weighted[c] = sum(planes, FILM_WEIGHTED + c, FILM_WEIGHTED_LOW + c, pixel);
+            });
+        });
+}
+
+template <class AfterBand> Film Renderer::read_film(AfterBand after_band) const {
     const size_t shown = size_t(crop_.width) * size_t(crop_.height);
     Film film;
     film.width = crop_.width;
     film.height = crop_.height;
     film.crop = crop_.is_whole() ? Crop{} : crop_;
-    const std::vector<cl_uint> counts = read_buffer<cl_uint>(device_, on_device_->counts, pixels_);
-    const std::vector<float> planes = read_buffer<float>(device_, on_device_->film, pixels_ * FILM_PLANES);
-    const auto value = [&](unsigned plane, unsigned low, size_t pixel) { // hi + lo
-        return double(planes[plane * pixels_ + pixel]) + double(planes[low * pixels_ + pixel]);
-    };
-    film.sum.resize(shown);
+    film.sum.reserve(shown); // and not resized: memory is taken band by band, as the device's may be freed
+    film.squares.reserve(shown);
+    film.weighted.reserve(wide_filter_ ? shown : 0);
+    film.count.reserve(shown);
+    for (FilmBand &band : on_device_->bands) {
+        if (!empty_)
+            read_band(band, film);
+        after_band(band);
+    }
+    film.sum.resize(shown); // with zeros, where nothing was rendered
     film.squares.resize(shown);
     film.weighted.resize(wide_filter_ ? shown : 0);
     film.count.resize(shown);
-    for (size_t p = 0; p < shown; p++) {
-        const size_t pixel = film_pixel(p);
-        film.count[p] = counts[pixel];
-        for (unsigned c = 0; c < 3; c++)
-            film.sum[p][c] = value(FILM_SUM + c, FILM_SUM_LOW + c, pixel);
-        for (unsigned c = 0; c < 4; c++)
-            film.squares[p][c] = value(FILM_SQUARES + c, FILM_SQUARES_LOW + c, pixel);
-        for (unsigned c = 0; wide_filter_ && c < 4; c++)
-            film.weighted[p][c] = value(FILM_WEIGHTED + c, FILM_WEIGHTED_LOW + c, pixel);
-    }
     const std::vector<cl_uint> invalid =
         read_buffer<cl_uint>(device_, on_device_->invalid, 1 + 2 * OPAL_INVALID_RECORDS);
     film.invalid = invalid[0];
@@ -265,6 +343,15 @@ Film Renderer::film() const {
                                        settings_.film.top + invalid[1 + 2 * i] / settings_.film.width,
                                        invalid[2 + 2 * i]});
     return film;
+}
+
+Film Renderer::film() const {
+    return read_film([](FilmBand &) {});
+}
+
+Film Renderer::take_film() {
+    on_device_->samples = cl::Buffer();
+    return read_film([](FilmBand &band) { band.sums = band.counts = band.weighted = cl::Buffer(); });
 }
 
 } // namespace opal

@@ -12,7 +12,8 @@
 
 namespace cl {
 class Kernel;
-}
+class Program;
+} // namespace cl
 
 namespace opal {
 
@@ -22,6 +23,11 @@ struct RenderOptions {
     double launch_seconds = 0.1;   // aim for a launch; a screen's watchdog may kill one of more than about 2 s
     unsigned max_pass_samples = 0; // of a pixel; 0: as many as memory and launch_seconds allow
 };
+
+// The kernels that add a pass to the film (cl/kernels/film.cl), compiled once for all scenes: drivers keep programs by
+// their text. seconds: what it took.
+cl::Program build_film_program(const Device &device, const BuildOptions &options, const Sources &sources,
+                               double *seconds = nullptr);
 
 class Renderer {
 public:
@@ -51,12 +57,15 @@ public:
     void restart(unsigned seed, unsigned first_sample = 0);
 
     Film film() const;
+    // The same film. Its memory on the device is freed as it is read: the renderer renders no more.
+    Film take_film();
     unsigned next_sample() const { return next_sample_; }
     double kernel_seconds() const { return kernel_seconds_; } // of all launches since the last restart
     double compile_seconds() const { return compile_seconds_; }
 
 private:
     struct OnDevice; // buffers and kernels
+    struct FilmBand;
     // How a pass is cut into launches and work-items: a work-item for each chunk of the samples of each tile. It is the
     // same for all passes, because drivers compile a kernel anew for each shape.
     struct LaunchShape {
@@ -71,7 +80,10 @@ private:
     void set_pass_arguments(cl::Kernel &kernel, unsigned first_argument, unsigned chunk_samples, unsigned pass_samples);
     double launch(const cl::Kernel &kernel, unsigned items);
     unsigned next_pass_samples(unsigned left) const;
-    size_t film_pixel(size_t p) const;
+    void gather(unsigned samples);
+    template <class Visit> void visit_shown(const FilmBand &band, Visit visit) const;
+    void read_band(const FilmBand &band, Film &film) const;
+    template <class AfterBand> Film read_film(AfterBand after_band) const;
 
     const Device device_; // a copy of handles to the same device
     Settings settings_;
@@ -80,6 +92,7 @@ private:
     LaunchShape shape_{};
     size_t pixels_ = 0; // of the device's film
     bool wide_filter_ = false;
+    bool empty_ = true; // no pass was added to the film yet
     std::unique_ptr<OnDevice> on_device_;
     unsigned next_sample_ = 0;
     unsigned buffer_spp_ = 0; // samples of each pixel that there is room for

@@ -73,6 +73,7 @@ nlohmann::json RenderReport::json() const {
     j["driver"] = device.driver;
     j["lanes"] = lanes;
     j["strategy"] = strategy_json(scene);
+    j["kernel"] = scene.strategy.is_general() ? "general" : "special";
     j["width"] = film.width;
     j["height"] = film.height;
     if (film.crop != Crop{})
@@ -175,7 +176,7 @@ std::vector<std::string> film_warnings(const RenderReport &render) {
                         render.scene.place.text(), s.samples));
     if (s.empty_pixels == 0)
         return lines;
-    const size_t pixels = film.count.size();
+    const size_t pixels = size_t(film.width) * size_t(film.height);
     std::string words = fmt::format(
         "{} of {} pixels ({:.3g} %) have no {}sample: the image shows nothing there, and its mean is that "
         "of the others, with unknown error",

@@ -52,15 +52,20 @@ void set_lanes(Strategy &strategy, const std::string &value) {
     strategy.lanes = find_row(widths, "lanes", value == "0" ? "auto" : value).lanes;
 }
 
+struct SpecialiseRow {
+    std::string name;
+    Specialise value;
+};
+const std::vector<SpecialiseRow> specialise_rows = { // by Specialise
+    {"auto", Specialise::automatic},
+    {"on", Specialise::on},
+    {"off", Specialise::off}};
+
 void set_specialise(Strategy &strategy, const std::string &value) {
-    struct Row {
-        std::string name;
-        bool on;
-    };
-    static const std::vector<Row> switches = {{"on", true}, {"off", false}};
-    bool is_boolean =
+    const bool is_boolean =
         std::tolower(value[0]) == 't' || std::tolower(value[0]) == 'f'; // "true" or "false", as the XML has it
-    strategy.specialise = is_boolean ? parse_boolean(value) : find_row(switches, "specialise", value).on;
+    strategy.specialise = is_boolean ? parse_boolean(value) ? Specialise::on : Specialise::off
+                                     : find_row(specialise_rows, "specialise", value).value;
 }
 
 const std::vector<StrategyOption> numbers = {
@@ -88,14 +93,11 @@ const std::vector<StrategyOption> numbers = {
      set_lanes,
      [](const Strategy &s) { return s.lanes ? std::to_string(s.lanes) : "auto"; },
      {"auto", "1", "4", "8", "16"}},
-    {"specialise",
-     "specialise",
-     "boolean",
-     "on|off",
-     "compile what the scene needs, or one kernel that can do everything [on]",
-     set_specialise,
-     [](const Strategy &s) { return std::string(s.specialise ? "on" : "off"); },
-     {"on", "off"}},
+    {"specialise", "specialise", "boolean", "auto|on|off",
+     "on: compile a kernel for what the scene needs; off: the general kernel, which is compiled once for all scenes; "
+     "auto: off on a CPU for few paths (fewer than 2^24, pixels times samples), else on [auto]",
+     set_specialise, [](const Strategy &s) { return specialise_rows[size_t(s.specialise)].name; },
+     names_of(specialise_rows)},
 };
 
 StrategyOption option_of_axis(int axis) {

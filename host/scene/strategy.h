@@ -38,6 +38,9 @@ struct IntegratorTraits {
 
 std::span<const IntegratorTraits> integrators(); // index = CHOICE_integrator_* value
 
+// Whether the kernel is compiled for the scene, or is one for all scenes.
+enum class Specialise { automatic, on, off };
+
 enum class MathMode { precise, fast, double_precision };
 
 // As typed (--math), indexed by MathMode.
@@ -56,7 +59,13 @@ struct Strategy {
     unsigned max_depth = no_limit;         // segments of the longest path
     MathMode math = MathMode::precise;
     int lanes = 0; // 0: the device's width
-    bool specialise = true;
+    Specialise specialise = Specialise::automatic;
+    bool few_paths = false; // are so few asked that `automatic` means the general kernel? (render/kernel_choice.h)
+
+    // Does the kernel for all scenes render?
+    bool is_general() const {
+        return specialise == Specialise::off || (specialise == Specialise::automatic && few_paths);
+    }
 
     int operator[](int axis) const { return choices[axis]; }
     int &operator[](int axis) { return choices[axis]; }

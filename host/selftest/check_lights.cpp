@@ -155,7 +155,7 @@ Findings scene_emitter_findings(KernelProbe &probe, const Light &light, const st
 FlatScene scene_of_light(const Light &light, int lanes) {
     SceneDescription scene;
     scene.lights = {light};
-    scene.strategy.specialise = false;
+    scene.strategy.specialise = Specialise::off;
     return flatten(scene, lanes);
 }
 

@@ -22,8 +22,8 @@ Findings run_rays(const Device &device, const SelftestOptions &options) {
     const unsigned seed = options.seed + 5;
     const size_t rays = options.full ? 50000 : 4000;
     const auto probe_of = [&](SceneDescription scene, bool specialise) {
-        scene.strategy.specialise = specialise;
-        FlatScene flat = flatten(scene, options.build.lanes);
+        scene.strategy.specialise = specialise ? Specialise::on : Specialise::off;
+        FlatScene flat = flatten(scene, options.build.lanes, specialise);
         if (specialise) { // one program for all scenes without a tree
             const bool tree = flat.features[FEATURE_tree];
             flat.features = scene_of_bsdfs({}).features;

@@ -2,6 +2,7 @@
 
 #include "base/json.h"
 #include "base/progress.h"
+#include "render/kernel_choice.h"
 #include "sweep/analysis.h"
 
 #include <fmt/format.h>
@@ -12,10 +13,11 @@ namespace opal {
 
 AutoChoice choose_strategy(const SceneDescription &scene, const Device &device, const Sources &sources, unsigned seed) {
     constexpr double pilot_seconds = 0.25;
-    const std::vector<Candidate> candidates = parse_strategies(scene, {"course"}, {});
+    std::vector<Candidate> candidates = parse_strategies(scene, {"course"}, {});
     std::vector<Pilot> pilots;
     RunningProgress progress("pilots");
-    for (const Candidate &c : candidates) {
+    for (Candidate &c : candidates) {
+        c.scene.strategy.few_paths = suits_general_kernel(device.info, 0);
         CompiledStrategy strategy(device, c, sources, device.info.type == "cpu" ? Clock::cpu : Clock::kernel);
         pilots.push_back(run_pilot(strategy, seed, pilot_seconds));
         progress.update(double(pilots.size()), double(candidates.size()));

@@ -32,8 +32,8 @@ CompiledStrategy::RenderResult CompiledStrategy::render(unsigned spp, unsigned s
 
 namespace {
 
-// The pilot's spp: its first number, the largest, and the largest factor from one try to the next.
-constexpr unsigned first_spp = 8, max_spp = 1u << 16;
+// The pilot's spp: its first number, and the largest factor from one try to the next.
+constexpr unsigned first_spp = 8;
 constexpr double max_growth = 8;
 
 double median_of(std::vector<double> values) {
@@ -44,11 +44,12 @@ double median_of(std::vector<double> values) {
 
 } // namespace
 
-Pilot run_pilot(CompiledStrategy &strategy, unsigned seed, double seconds) {
+Pilot run_pilot(CompiledStrategy &strategy, unsigned seed, double seconds, unsigned most_spp) {
     unsigned spp = first_spp;
     CompiledStrategy::RenderResult r = strategy.render(spp, seed, first_pilot_sample);
-    while (r.seconds < seconds / 2 && spp < max_spp) {
+    while (r.seconds < seconds / 2 && spp < most_spp) {
         spp = unsigned(std::clamp(seconds / std::fmax(r.seconds, 1e-9) * spp, 2.0 * spp, max_growth * spp));
+        spp = std::min(spp, most_spp);
         r = strategy.render(spp, seed, first_pilot_sample);
     }
     Pilot pilot{spp, r.seconds / spp, {}, {}, strategy.uses_mis()};

@@ -56,8 +56,8 @@ struct Pilot {
     std::vector<double> mean, variance; // of a sample's luminance, for each pixel
     bool mis = false;                   // the strategy uses multiple importance sampling
 };
-// Renders a pilot of about `seconds` by the strategy's clock.
-Pilot run_pilot(CompiledStrategy &strategy, unsigned seed, double seconds);
+// Renders a pilot of about `seconds` by the strategy's clock, or of `most_spp` samples a pixel.
+Pilot run_pilot(CompiledStrategy &strategy, unsigned seed, double seconds, unsigned most_spp = 1u << 16);
 
 // Estimates each strategy's seconds to relMSE 1: the relative variance of one sample, averaged over the pixels, times
 // the seconds for a sample of each pixel. Two corrections guard against pilots that have missed rare bright samples:

@@ -12,6 +12,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 namespace opal {
@@ -19,6 +20,7 @@ namespace opal {
 namespace {
 
 constexpr double max_pilot_seconds = 0.5;     // for one pilot
+constexpr double max_pilot_spp = 1u << 16;    // and of no more samples a pixel than the strategy's points
 constexpr double pilots_share = 0.1;          // of the budget, for all pilots together
 constexpr double equal_time_tolerance = 0.05; // of the times of "what each gives in the same time"
 constexpr unsigned equal_time_reruns = 2;
@@ -90,11 +92,14 @@ private:
             return;
         const double share =
             record_.budget > 0 ? pilots_share * device_budget() / double(candidates_.size()) : max_pilot_seconds;
+        const double most_spp = double(record_.replicates) *
+                                std::accumulate(record_.spp.begin(), record_.spp.end(), 0.0); // as the points have
         std::vector<Pilot> all;
         for (size_t i = 0; i < candidates_.size(); i++) {
             StrategyRecord &s = record_of(candidates_[i]);
             CompiledStrategy &strategy = compiled(i);
-            all.push_back(run_pilot(strategy, plan_.seed, std::fmin(max_pilot_seconds, share)));
+            all.push_back(run_pilot(strategy, plan_.seed, std::fmin(max_pilot_seconds, share),
+                                    unsigned(std::fmin(most_spp, max_pilot_spp))));
             progress_->update(double(all.size()), double(candidates_.size()));
             s.independent = candidates_[i].scene.strategy[AXIS_sampler] == CHOICE_sampler_independent;
             s.compile_seconds = strategy.compile_seconds();

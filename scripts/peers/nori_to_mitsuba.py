@@ -12,6 +12,7 @@ them); both cameras look along +z with +x left in the image, so a mirroring `<sc
 """
 import math
 import os
+import time
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -214,9 +215,16 @@ def to_dict(path, rr_depth, spp=None, size=None):
     return scene
 
 
-def load(mi, path, **options):
-    """The loaded scene, in the variant that is set in the module `mi`."""
+def load_timed(mi, path, **options):
+    """The loaded scene, in the variant that is set in the module `mi`, and the CPU seconds that its conversion took."""
     def with_transforms(d):
         return {k: mi.ScalarTransform4f(v) if isinstance(v, np.ndarray) else with_transforms(v) if isinstance(v, dict) else v
                 for k, v in d.items()}
-    return mi.load_dict(with_transforms(to_dict(path, **options)))
+    begun = time.process_time()
+    converted = with_transforms(to_dict(path, **options))
+    seconds = time.process_time() - begun
+    return mi.load_dict(converted), seconds
+
+
+def load(mi, path, **options):
+    return load_timed(mi, path, **options)[0]

@@ -21,10 +21,10 @@ def run(command):
     return done.stdout
 
 
-def build(folder):
-    """The replayer, compiled against the system's Embree 3."""
-    source = os.path.join(os.path.dirname(__file__), "embree_rays.cpp")
-    binary = os.path.join(folder, "embree_rays")
+def build(folder, name="embree_rays.cpp"):
+    """A program beside this file, by default the replayer, compiled against the system's Embree 3."""
+    source = os.path.join(os.path.dirname(__file__), name)
+    binary = os.path.join(folder, os.path.splitext(name)[0])
     compiler = os.environ.get("CXX", "c++")
     try:
         run([compiler, "-std=c++20", "-O3", "-Wall", "-Wextra", source, "-o", binary, "-lembree3", "-pthread"])

@@ -1,6 +1,7 @@
 """Whole renders: Opal against Mitsuba 3, A B A B, the same scene at the same strategy (path tracing with BSDF and emitter
 sampling, power heuristic, roulette by throughput). Rates are camera paths a second of render time, warm: Opal's kernel time, Mitsuba's
 mi.render until the pixels are there."""
+import glob
 import json
 import math
 import os
@@ -11,10 +12,16 @@ import tempfile
 
 from peers.report import PeerError, spread
 
-STRATEGY = ["--lighting", "mis", "--mis", "power", "--rr", "throughput-eta"]
+STRATEGY = ["--lighting", "mis", "--mis", "power", "--rr", "throughput-eta", "--specialise", "on"]  # one kernel for pilots and renders
 SIGMA = 4  # combined standard errors by which two mean luminances may differ
 HINTS = {"No module named": "; install it with `python3 -m venv V; V/bin/pip install mitsuba numpy` and name it with --python V/bin/python",
          "LLVM shared library": "; it is Debian's libllvm19, name it with --llvm, or leave it out with --variants scalar_rgb"}
+
+
+def installed_llvm():
+    """The newest libLLVM from 17 on that Debian's packages left here; None lets Dr.Jit search by itself."""
+    found = [(v, path) for v in range(17, 30) for path in glob.glob(f"/usr/lib/*/libLLVM-{v}.so") + glob.glob(f"/usr/lib/*/libLLVM.so.{v}*")]
+    return max(found)[1] if found else None
 
 
 class Mitsuba:

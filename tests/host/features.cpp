@@ -87,17 +87,18 @@ TEST_CASE("features are what the scene and the strategy ask for, each with a rea
     }
     SECTION("filters beyond the pixel") {
         description.camera.filter = {FILTER_box, 0.5, 0.5, 0, 0, true};
-        CHECK(on(description).count("wide_filter") == 0);
+        CHECK_FALSE(is_wide_filter(flatten(description, 8).settings));
         description.camera.filter.radius = 0.75;
-        CHECK(on(description).count("wide_filter") == 1);
+        CHECK(is_wide_filter(flatten(description, 8).settings));
         description.camera.filter = {FILTER_tent, 0.5, 0.5, 0, 0, true};
-        CHECK(on(description).count("wide_filter") == 1);
+        CHECK(is_wide_filter(flatten(description, 8).settings));
     }
     SECTION("everything without specialisation") {
-        description.strategy.specialise = false;
+        description.strategy.specialise = Specialise::off;
         const Features features = flatten(description, 8).features;
-        for (const Feature &feature : features.list)
-            CHECK(feature.on);
+        for (unsigned feature = 0; feature < FEATURE_COUNT; feature++)
+            CHECK(features[feature] == (feature != FEATURE_large_tree));
+        CHECK_FALSE(flatten(description, 1).features[FEATURE_face_list]);
         for (int axis : features.axes)
             CHECK(axis == -1);
     }

@@ -153,12 +153,19 @@ TEST_CASE("tiny scenes share corners and need no tree", "[flatten]") {
     for (uint i = 0; i < 6; i++)
         CHECK(triangles_of_face(scene, i).size() == 2);
 
-    SECTION("but for few lanes, many triangles, many vertices, or a kernel that can do everything") {
+    SECTION("in the general kernel, too, which finds an empty tree") {
+        SceneDescription general = scene_of(faces);
+        general.strategy.specialise = Specialise::off;
+        const FlatScene flat = flatten(general, 8);
+        CHECK(flat.faces.size() == 6);
+        REQUIRE(flat.nodes.size() == 1);
+        CHECK(std::ranges::all_of(flat.nodes[0].child, [](uint child) { return child == OPAL_NONE; }));
+        CHECK(flat.triangle_blocks.size() == scene.triangle_blocks.size());
+    }
+    SECTION("but for few lanes, many triangles or many vertices") {
         CHECK(flatten(scene_of(faces), 1).features[FEATURE_tree]);
         CHECK(flatten(scene_of(faces), 1).faces.empty());
-        SceneDescription general = scene_of(faces);
-        general.strategy.specialise = false;
-        CHECK_FALSE(flatten(general, 8).nodes.empty());
+        CHECK(flatten(scene_of(faces), 8, false).faces.empty());
         std::vector<Mesh> many, scattered;
         for (int i = 0; i < 25; i++)
             many.push_back(diffuse(Parallelogram{{0, 0, 0.1 * i}, {1, 0, 0}, {0, 1, 0}}));

@@ -8,15 +8,18 @@
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfMultiPartOutputFile.h>
+#include <ImfOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
 #include <catch2/catch.hpp>
 #include <png.h>
 
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <random>
 #include <sys/mount.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -160,6 +163,45 @@ TEST_CASE("The picture is found in files of other programs", "[image]") {
     CHECK(read.crop == Crop{4, 5, 3, 2, 10, 10});
 }
 
+TEST_CASE("An EXR of repetitions is the file that OpenEXR writes, one of noise has its pixels", "[image]") {
+    const ScratchFolder folder;
+    std::mt19937 random(1);
+    const auto bits = [&] { return std::bit_cast<float>(uint32_t(random())); };
+    for (const auto &[width, height] : {std::pair{1, 1}, {31, 33}, {200, 97}})
+        for (const bool noise : {false, true}) {
+            INFO(width << " x " << height << ", noise " << noise);
+            Image image = gradient(width, height);
+            image.layers[3].name = "variance.with_a_name_of_more_than_31_letters";
+            image.metadata = {{"scene", "a b.xml"}};
+            float repeated[5];
+            std::generate_n(repeated, 5, bits);
+            for (Layer &layer : image.layers)
+                for (size_t i = 0; i < layer.values.size(); i++)
+                    layer.values[i] = noise ? bits() : repeated[i % 5];
+            write_exr(image, folder / "ours.exr");
+            const Image read = read_exr(folder / "ours.exr");
+            for (const Layer &layer : image.layers)
+                CHECK(std::memcmp(read.get(layer.name).values.data(), layer.values.data(),
+                                  layer.values.size() * sizeof(float)) == 0);
+            {
+                Imf::InputFile ours((folder / "ours.exr").c_str());
+                Imf::OutputFile theirs((folder / "theirs.exr").c_str(), ours.header());
+                Imf::FrameBuffer frame;
+                for (Layer &layer : image.layers)
+                    frame.insert(layer.name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char *>(layer.values.data()),
+                                                        sizeof(float), sizeof(float) * size_t(width)));
+                theirs.setFrameBuffer(frame);
+                theirs.writePixels(height);
+            }
+            const std::string own = test::read_text(folder / "ours.exr"),
+                              other = test::read_text(folder / "theirs.exr");
+            if (noise) // its chunks may be packed otherwise
+                CHECK(double(own.size()) < 1.03 * double(other.size()));
+            else
+                CHECK((own == other));
+        }
+}
+
 TEST_CASE("A file that is no EXR, or only a part of one, is refused by name", "[image]") {
     const ScratchFolder folder;
     CHECK_THROWS_WITH(read_exr(folder / "none.exr"), Catch::Contains("none.exr"));
@@ -207,6 +249,71 @@ TEST_CASE("Exposure and tone mapping come before the sRGB curve", "[image]") {
     CHECK(red_of({.exposure = 2}) == std::vector<int>{0, 118, 255, 255, 0, 255});
     // 0.18 -> 0.26690, and 1 -> 0.80380, by the formula; -> 0.55346 and 0.90823 by the sRGB curve.
     CHECK(red_of({.exposure = 2, .tonemap = Tonemap::aces}) == std::vector<int>{0, 141, 232, 252, 0, 255});
+}
+
+TEST_CASE("A PNG's bytes are those of the exact curve on both sides of each limit", "[image]") {
+    const ScratchFolder folder;
+    for (const Display &display : {Display{}, Display{.exposure = 1.3}, Display{.exposure = -60},
+                                   Display{.exposure = 0.5, .tonemap = Tonemap::aces}}) {
+        INFO("exposure " << display.exposure << ", aces " << (display.tonemap == Tonemap::aces));
+        const auto exact = [&](float value) {
+            double x = std::exp2(display.exposure) * double(value);
+            if (display.tonemap == Tonemap::aces) {
+                x = std::max(x, 0.0);
+                x = x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
+            }
+            return int(std::floor(255 * srgb_encode(x) + 0.5));
+        };
+        std::vector<float> values = {0.f, -0.f, 1e-45f, -1e-45f, -1.f, 1.f, 1e30f, -3e38f};
+        for (int byte = 1; byte < 256; byte++) { // the limit by bisection of the exact curve, and its neighbours
+            float below = 0, above = 1e30f;
+            while (std::nextafter(below, above) < above) {
+                const float middle = below + (above - below) / 2;
+                (exact(middle) < byte ? below : above) = middle;
+            }
+            REQUIRE((exact(below) < byte && exact(above) >= byte));
+            float value = below;
+            for (int step = 0; step < 20; step++)
+                values.push_back(value = std::nextafter(value, 0.f));
+            value = below;
+            for (int step = 0; step < 20; step++, value = std::nextafter(value, above + 1))
+                values.push_back(value);
+        }
+        std::mt19937 random(2);
+        while (values.size() < 40000) {
+            const auto value = std::bit_cast<float>(uint32_t(random()));
+            values.push_back(std::isfinite(value) ? value : 0.25f);
+        }
+        write_png(grey(values), folder / "image.png", display);
+        png_image header;
+        const std::vector<png_byte> bytes = read_png(folder / "image.png", header);
+        size_t wrong = 0;
+        for (size_t i = 0; i < values.size(); i++)
+            wrong += bytes[3 * i] != exact(values[i]) || bytes[3 * i + 2] != exact(values[i]);
+        CHECK(wrong == 0);
+    }
+}
+
+TEST_CASE("A PNG of noise has its pixels, row by row, and one of repetitions stays small", "[image]") {
+    const ScratchFolder folder;
+    std::mt19937 random(3);
+    for (const bool noise : {false, true}) {
+        Image image{150, 60, {}, {}};
+        for (const char *name : {"R", "G", "B"}) {
+            image.layers.push_back({name, {}});
+            for (int i = 0; i < image.width * image.height; i++)
+                image.layers.back().values.push_back(noise ? float(random() >> 8) * 0x1p-24f : float(i % 7) / 7);
+        }
+        write_png(image, folder / "image.png");
+        png_image header;
+        const std::vector<png_byte> bytes = read_png(folder / "image.png", header);
+        REQUIRE((header.width == 150 && header.height == 60));
+        bool same = true;
+        for (size_t i = 0; i < bytes.size(); i++)
+            same = same && bytes[i] == std::floor(255 * srgb_encode(double(image.layers[i % 3].values[i / 3])) + 0.5);
+        CHECK(same);
+        CHECK(std::filesystem::file_size(folder / "image.png") < (noise ? 1.01 : 0.1) * double(bytes.size()));
+    }
 }
 
 TEST_CASE("The sRGB curve joins its two pieces", "[image]") {

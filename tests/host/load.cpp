@@ -159,7 +159,7 @@ TEST_CASE_METHOD(LoadFixture, "every axis and number is a property of the integr
     CHECK(s.rr_depth == 4);
     CHECK(s.math == MathMode::fast);
     CHECK(s.lanes == 8);
-    CHECK_FALSE(s.specialise);
+    CHECK(s.specialise == Specialise::off);
     CHECK(load_integrator("<integrator type='path_mis'><integer name='maxDepth' value='-1'/></integrator>")
               .strategy.max_depth == no_limit);
     CHECK(property_error("integrator", "path_mis", "<string name='mis' value='powr'/>") ==

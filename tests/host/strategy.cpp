@@ -117,11 +117,11 @@ TEST_CASE("overrides set axes and numbers", "[strategy]") {
     CHECK(s.rr_prob == 0.8);
     CHECK(s.math == MathMode::fast);
     CHECK(s.lanes == 16);
-    CHECK_FALSE(s.specialise);
+    CHECK(s.specialise == Specialise::off);
     s = overridden({{"max-depth", "none"}, {"lanes", "auto"}, {"specialise", "on"}, {"math", "precise"}}, s);
     CHECK(s.max_depth == no_limit);
     CHECK(s.lanes == 0);
-    CHECK(s.specialise);
+    CHECK(s.specialise == Specialise::on);
     CHECK(s.math == MathMode::precise);
 }
 
@@ -156,7 +156,7 @@ TEST_CASE("bad overrides say what was possible", "[strategy]") {
     CHECK(override_error("rr-prob", "nan") == "'nan' is not a finite number in single precision");
     CHECK(override_error("lanes", "2") == "unknown lanes '2'; available: auto, 1, 4, 8, 16");
     CHECK(override_error("math", "exact") == "unknown math 'exact'; available: precise, fast, double");
-    CHECK_THAT(override_error("specialise", ""), Catch::Contains("available: on, off"));
+    CHECK_THAT(override_error("specialise", ""), Catch::Contains("available: auto, on, off"));
     CHECK_THAT(override_error("integrator", "path_mist"),
                Catch::StartsWith("unknown integrator 'path_mist'; did you mean 'path_mis'?"));
 }

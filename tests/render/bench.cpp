@@ -261,3 +261,21 @@ TEST_CASE("bench render times the kernel and its variants", "[bench]") {
         CHECK(stats["widths"][lanes]["time"]["median"] > 0.0);
     CHECK(stats["general"]["time"]["median"] > 1.0);
 }
+
+TEST_CASE("bench_growth measures each size, and names and leaves out the peers that are missing", "[bench]") {
+    const ScratchFolder folder;
+    const std::string script = "CXX=false " OPAL_SOURCE_DIR "/scripts/bench_growth --opal " OPAL_BINARY;
+    const std::string json = (folder / "growth.json").string();
+    const Outcome outcome = run_shell(script + " --parts meshes --meshes 4,9 --rounds 1 --python false --json " + json);
+    INFO(outcome.out << outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK_THAT(outcome.out, Catch::Contains("without Mitsuba: ") && Catch::Contains("without Embree: "));
+    const nlohmann::json said = nlohmann::json::parse(read_text(json));
+    CHECK(said["missing"].size() == 2);
+    REQUIRE(said["parts"]["meshes"].size() == 2);
+    for (const auto &row : said["parts"]["meshes"])
+        CHECK((row["Opal"]["cpu"] > 0 && row["Opal"]["peak_mb"] > 1 && !row.contains("Mitsuba")));
+    const Outcome refused = run_shell(script + " --parts meshes,tress");
+    CHECK(refused.exit_code == 2);
+    CHECK_THAT(refused.err, Catch::Contains("--parts: no tress; available: triangles, meshes"));
+}

@@ -10,7 +10,11 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <cstring>
 #include <random>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 using namespace opal;
 using namespace opal::test;
@@ -19,7 +23,7 @@ namespace {
 
 // Kernels that make every sample of pixels 5, 16, 27, ... NaN, or infinite where `what` says so.
 Mutant spoiled(const std::string &what) {
-    return {"pixels " + what, "kernels/queue.cl", "sample[0] = r[lane];",
+    return {"pixels " + what, "kernels/retire.cl", "sample[0] = r[lane];",
             "sample[0] = place[lane] % 11u == 5u ? " + what + " : r[lane];"};
 }
 
@@ -31,6 +35,96 @@ TEST_CASE("Sums of many samples lose nothing, and leave out what is not finite",
 
 TEST_CASE("A crop has the bits of its part of the image, with filters of any width", "[film]") {
     require_all_pass(check_crops(Sources::embedded(), test_seed(42)));
+}
+
+TEST_CASE("A film of several bands has the bits of its parts", "[film]") {
+    SceneDescription scene = gallery(1000, 600); // a band ends within row 524
+    for (int kind : {FILTER_box, FILTER_gaussian}) {
+        scene.camera.filter.kind = kind;
+        scene.camera.filter.radius = kind == FILTER_box ? 0.5 : 2;
+        scene.camera.crop = {};
+        const Film whole = render(scene, 1, test_seed(43));
+        for (const Crop &crop : {Crop{0, 523, 1000, 3, 1000, 600}, {280, 500, 20, 60, 1000, 600}}) {
+            INFO(text_of(crop));
+            scene.camera.crop = crop;
+            const Image part = image_of(render(scene, 1, test_seed(43)), true);
+            for (const Layer &layer : cropped(image_of(whole, true), crop).layers)
+                CHECK((part.get(layer.name).values == layer.values));
+        }
+    }
+}
+
+TEST_CASE("A film without any pass is empty, and so is one after a restart", "[film]") {
+    Renderer renderer = renderer_of(furnace(0.5, 1));
+    for (int round = 0; round < 2; round++) {
+        const Film film = renderer.film();
+        REQUIRE(film.count.size() == size_t(film.width) * size_t(film.height));
+        CHECK(film.count == std::vector<unsigned>(film.count.size(), 0));
+        CHECK(film.sum == decltype(film.sum)(film.count.size()));
+        renderer.render(2);
+        CHECK(renderer.film().count == std::vector<unsigned>(film.count.size(), 2));
+        renderer.restart(1);
+    }
+}
+
+TEST_CASE("The last pixels of the largest image are gathered and cleared", "[film]") {
+    require_all_pass(check_largest_film());
+}
+
+TEST_CASE("Scenes share the program of the film", "[film]") {
+    const ScratchFolder folder;
+    // PoCL keeps each program in a folder of two levels, which it names by the program's text.
+    const auto programs = [&] {
+        size_t count = 0;
+        for (const auto &entry : std::filesystem::recursive_directory_iterator(folder / "cache"))
+            count += entry.is_regular_file() && entry.path().filename() == "program.bc";
+        return count;
+    };
+    std::filesystem::create_directory(folder / "cache");
+    std::vector<size_t> counts;
+    for (const char *scene : {"cbox_mis.xml", "furnace.xml --sampler sobol", "cbox_nee.xml", "cbox_mis.xml"}) {
+        const Outcome outcome = run_shell(
+            "POCL_CACHE_DIR=" + (folder / "cache").string() + " " OPAL_BINARY " render " OPAL_SOURCE_DIR "/scenes/" +
+            scene + " --specialise on --width 8 --height 8 --spp 1 --no-png -o " + (folder / "out.exr").string());
+        INFO(outcome.err);
+        REQUIRE(outcome.exit_code == 0);
+        counts.push_back(programs());
+    }
+    CAPTURE(counts);
+    if (counts[0] > 0) // another driver keeps none there
+        CHECK(counts == std::vector<size_t>{2, 3, 4, 4});
+}
+
+TEST_CASE("A render of 1920 x 1080 pixels takes at most 124 bytes for each", "[film]") {
+    const ScratchFolder folder;
+    std::string gaussian = read_text(OPAL_SOURCE_DIR "/scenes/cbox_mis.xml");
+    const size_t filter = gaussian.find("type=\"box\"");
+    REQUIRE(filter != std::string::npos);
+    gaussian.replace(filter, std::strlen("type=\"box\""), "type=\"gaussian\"");
+    // The largest memory that the process had at once, less that of a small picture.
+    const auto peak = [&](const std::string &scene, int width, int height) {
+        const std::string w = std::to_string(width), h = std::to_string(height), out = folder / "out.exr";
+        const pid_t child = fork();
+        if (child == 0) {
+            execl(OPAL_BINARY, OPAL_BINARY, "render", scene.c_str(), "--width", w.c_str(), "--height", h.c_str(),
+                  "--spp", "6", "--device", wanted_device().c_str(), "--quiet", "-o", out.c_str(), nullptr);
+            _exit(127);
+        }
+        int status = 0;
+        rusage used{};
+        REQUIRE(wait4(child, &status, 0, &used) == child);
+        REQUIRE((WIFEXITED(status) && WEXITSTATUS(status) == 0));
+        return 1024.0 * double(used.ru_maxrss);
+    };
+    std::filesystem::create_directory_symlink(OPAL_SOURCE_DIR "/scenes/meshes", folder / "meshes");
+    for (const std::string &scene :
+         {std::string(OPAL_SOURCE_DIR "/scenes/cbox_mis.xml"), folder.write("gaussian.xml", gaussian).string()}) {
+        peak(scene, 16, 16); // compiles
+        const double bytes = (peak(scene, 1920, 1080) - peak(scene, 16, 16)) / (1920 * 1080);
+        INFO(scene << ": " << bytes << " bytes a pixel");
+        CHECK(bytes <= 124);
+        CHECK(bytes > 60); // the film alone: else this measures nothing
+    }
 }
 
 // Grey samples of noise around a radiance of 1, count(p) of them in pixel p.

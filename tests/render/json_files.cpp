@@ -77,6 +77,7 @@ TEST_CASE("The JSON of every command is as its schema says", "[json_files]") {
              {"inspect", "inspect " + box},
              {"devices", "devices"},
              {"version", "version"},
+             {"cache", "cache"},
              {"compare", "compare a.exr a.exr"},
              {"warp", "warp square_to_uniform_disk --samples 1000"},
              {"test", "test " OPAL_SOURCE_DIR "/tests/cases/conformance/furnace.xml --samples 10"},

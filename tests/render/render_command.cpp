@@ -155,7 +155,8 @@ TEST_CASE("What cannot be rendered or written is refused, and nothing is left be
     check_refused(folder, folder.scene, "2 scenes: their images need a folder, -o FOLDER/", exit_usage);
     check_refused(folder, folder.scene + " -o out/", "both images would be out/plain.exr", exit_usage);
     check_refused(folder, "--no-png -o /dev/full", "No space left on device", exit_failed);
-    check_refused(folder, "--width 65535 --height 65535", "no room for the film and its samples: ", exit_failed);
+    check_refused(folder, "--width 65535 --height 65535",
+                  "no room for the film of 65535 x 65535 pixels and its samples: ", exit_failed);
     check_refused(folder, "--lanes 3", "unknown lanes '3'; available: auto, 1, 4, 8, 16", exit_usage);
     check_refused(folder, "--lighting bsdf --mis one-sample", "makes no sense", exit_failed);
 }
@@ -242,6 +243,18 @@ TEST_CASE("Names of any bytes keep the image and the JSON", "[render_command]") 
     CHECK(image.text("opal.scene") == folder.scene); // the bytes themselves
     CHECK(image.text("opal.dialect") == "upstream");
     CHECK_THAT(image.text("opal.warnings"), Catch::Contains("k\uFFFDse.obj"));
+}
+
+TEST_CASE("A line tells that files are being written where that takes long", "[render_command]") {
+    const SceneFolder folder;
+    const std::string pipe = folder.scratch / "pipe"; // which nobody reads for three seconds
+    const std::filesystem::path copy = folder.scratch / "copy.exr";
+    const Outcome outcome = run_shell("mkfifo " + pipe + "; ( sleep 3; cat " + pipe + " >" + copy.string() + " ) & " +
+                                      folder.render("-o " + pipe) + " && wait");
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    CHECK_THAT(outcome.err, Catch::Contains("writing 1 s\n"));
+    CHECK(read_exr(copy).get("B").values.front() == Approx(3).epsilon(1e-6));
 }
 
 TEST_CASE("Ctrl-C writes what there is and exits with a code of its own", "[render_command]") {

@@ -41,6 +41,8 @@ Findings check_filters(const Sources &sources, unsigned seed);
 
 // The film's sums against double on the host, for samples of very different size.
 Findings check_film(const Sources &sources, unsigned seed);
+// The end of a film of 2^28 pixels; nothing where the device has no buffer for its samples.
+Findings check_largest_film();
 // Passes cut differently: the same bits.
 Findings check_crops(const Sources &sources, unsigned seed); // hold the bits of the whole image
 Findings check_passes(const Sources &sources, unsigned seed);

@@ -1,4 +1,5 @@
 // The film's kernels on samples of the test's own making.
+#include "render/renderer.h"
 #include "shared/film.h"
 #include "stats/moments.h"
 #include "support/checks.h"
@@ -51,23 +52,35 @@ Findings check_film(const Sources &sources, unsigned seed) {
     for (int lanes : tested_lanes()) {
         BuildOptions build;
         build.lanes = lanes;
-        const cl::Program program =
-            build_program(device(), program_text(all_features({FEATURE_wide_filter}), build, sources), build);
-        const Output<float> film(FILM_PLANES * pixels);
-        const Output<cl_uint> counts(pixels), invalid(1 + 2 * OPAL_INVALID_RECORDS);
-        // In two passes, so that the sums of one go on in the next.
+        const cl::Program program = build_film_program(device(), build, sources);
+        const Output<cl_uint> invalid(1 + 2 * OPAL_INVALID_RECORDS);
+        // In two passes, so that the sums of one go on in the next, and in two bands.
         const unsigned first = samples / 4;
-        for (const auto &[from, count] : {std::pair{0u, first}, std::pair{first, samples - first}}) {
-            std::vector<float> pass;
-            for (unsigned p = 0; p < pixels; p++)
-                pass.insert(pass.end(), slots.begin() + 3 * (ptrdiff_t(p) * samples + from),
-                            slots.begin() + 3 * (ptrdiff_t(p) * samples + from + count));
-            run(program, "gather", (pixels + size_t(lanes) - 1) / size_t(lanes), std::vector<Settings>{settings}, pass,
-                film, counts, invalid, cl_uint(from), cl_uint(count));
+        std::vector<float> planes[FILM_PLANES];
+        std::vector<cl_uint> counted;
+        for (const auto &[band_first, band_pixels] : {std::pair{0u, 2u}, std::pair{2u, pixels - 2}}) {
+            const Output<float> film(FILM_PLANES * band_pixels);
+            const Output<cl_uint> counts(band_pixels);
+            for (const cl::Buffer &written : {film.buffer, counts.buffer}) // the first pass finds anything there
+                device().handles->queue.enqueueFillBuffer(written, cl_uchar(0xff), 0, 4ul * band_pixels);
+            for (const auto &[from, count] : {std::pair{0u, first}, std::pair{first, samples - first}}) {
+                std::vector<float> pass;
+                for (unsigned p = 0; p < pixels; p++)
+                    pass.insert(pass.end(), slots.begin() + 3 * (ptrdiff_t(p) * samples + from),
+                                slots.begin() + 3 * (ptrdiff_t(p) * samples + from + count));
+                run(program, "gather", (band_pixels + size_t(lanes) - 1) / size_t(lanes),
+                    std::vector<Settings>{settings}, pass, cl_uint(from), cl_uint(count), cl_uint(band_first),
+                    cl_uint(band_pixels), cl_uint(from == 0), film, counts, invalid);
+            }
+            const std::vector<float> sums = film.read();
+            for (unsigned plane = 0; plane < FILM_PLANES; plane++)
+                planes[plane].insert(planes[plane].end(), sums.begin() + plane * band_pixels,
+                                     sums.begin() + (plane + 1) * band_pixels);
+            for (cl_uint count : counts.read())
+                counted.push_back(count);
         }
-        const std::vector<float> sums = film.read();
         const auto value = [&](unsigned plane, unsigned low, unsigned p) {
-            return double(sums[plane * pixels + p]) + double(sums[low * pixels + p]);
+            return double(planes[plane][p]) + double(planes[low][p]);
         };
         for (unsigned p = 0; p < pixels; p++)
             for (unsigned c = 0; c < 3; c++) {
@@ -84,12 +97,66 @@ Findings check_film(const Sources &sources, unsigned seed) {
                 findings.push_back(
                     exact(where + "squares", close(value(FILM_SQUARES + c, FILM_SQUARES_LOW + c, p), squares.value())));
             }
-        findings.push_back(
-            exact("samples counted", counts.read() == std::vector<cl_uint>{samples, samples, samples - 3}));
+        findings.push_back(exact("samples counted", counted == std::vector<cl_uint>{samples, samples, samples - 3}));
         const std::vector<cl_uint> found = invalid.read();
         findings.push_back(
             exact("invalid samples counted and placed", std::vector<cl_uint>(found.begin(), found.begin() + 7) ==
                                                             std::vector<cl_uint>{3, 2, 5, 2, 70, 2, 71}));
+    }
+    return findings;
+}
+
+Findings check_largest_film() {
+    constexpr unsigned side = 1u << 14, last = 4, value = 3, spp = 1; // `last` pixels at the end are a band
+    Settings settings{};
+    settings.width = settings.height = side;
+    settings.film = {0, 0, side, side};
+    settings.filter = FILTER_tent;
+    settings.filter_radius = 1;
+    const unsigned long long all = 1ull * side * side, sample_bytes = 4 * OPAL_SAMPLE_FLOATS;
+    if (sample_bytes * all > device().info.max_allocation) {
+        WARN("the device has no buffer of " << sample_bytes * all << " bytes for the samples of the largest image");
+        return {};
+    }
+    Findings findings;
+    for (int lanes : tested_lanes()) {
+        const std::string where = std::to_string(lanes) + " lanes: ";
+        BuildOptions build;
+        build.lanes = lanes;
+        const cl::Program program = build_film_program(device(), build, Sources::embedded());
+        struct Samples {
+            cl::Buffer buffer;
+        } const samples{make_buffer(device(), CL_MEM_READ_WRITE, sample_bytes * all, nullptr, "a test's samples")};
+        // Two rows of one value: what the filter reaches.
+        const std::vector<float> rows(size_t(OPAL_SAMPLE_FLOATS) * 2 * side, float(value));
+        const unsigned long long place = sample_bytes * (all - 2 * side);
+        with_device(device().info, [&] {
+            return device().handles->queue.enqueueWriteBuffer(samples.buffer, CL_TRUE, place, 4 * rows.size(),
+                                                              rows.data());
+        });
+        const std::vector<Settings> table{settings};
+        const Output<float> film(FILM_PLANES * last), weighted(FILM_WEIGHTED_PLANES * last);
+        const Output<cl_uint> counts(last), invalid(1 + 2 * OPAL_INVALID_RECORDS);
+        run(program, "gather", last, table, samples, 0u, spp, cl_uint(all - last), last, 1u, film, counts, invalid);
+        run(program, "gather_around", last, table, samples, 0u, spp, cl_uint(all - last), last, 1u, weighted);
+        const std::vector<float> sums = film.read(), around = weighted.read();
+        for (unsigned p = 0; p < last; p++) {
+            findings.push_back(exact(where + "sum", sums[FILM_SUM * last + p] == float(value)));
+            const float mean = around[FILM_WEIGHTED * last + p] / around[(FILM_WEIGHTED + 3) * last + p];
+            findings.push_back(exact(where + "weighted mean", std::abs(mean - float(value)) < 1e-5f));
+        }
+        findings.push_back(exact(where + "counts", counts.read() == std::vector<cl_uint>(last, 1)));
+        // The last tile of 8 x 8 pixels becomes empty, and the pixel before its last row does not.
+        constexpr unsigned tile = 8, tiles = side / tile * (side / tile);
+        run(program, "clear", 1, table, samples, tiles - 1, tiles, tile, tile, 1u, spp, 0u, spp);
+        std::vector<cl_uint> words(OPAL_SAMPLE_FLOATS * (tile + 1));
+        with_device(device().info, [&] {
+            return device().handles->queue.enqueueReadBuffer(samples.buffer, CL_TRUE, sample_bytes * (all - tile - 1),
+                                                             4 * words.size(), words.data());
+        });
+        for (unsigned p = 0; p <= tile; p++)
+            findings.push_back(
+                exact(where + "cleared", (words[OPAL_SAMPLE_FLOATS * p] == OPAL_SAMPLE_EMPTY) == (p > 0)));
     }
     return findings;
 }

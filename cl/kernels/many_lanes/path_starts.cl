@@ -61,7 +61,7 @@ static void prepare_starts(const Scene *scene, Queue queue, Starts *starts) {
 }
 
 // Hands the ended lanes, a bit each, the next camera paths, as far as there are any. Returns the lanes that got one.
-CALLED static mask refill(const Scene *scene, Starts *starts, Path *path, uint ended) {
+static CALLED mask refill(const Scene *scene, Starts *starts, Path *path, uint ended) {
     uint taken = 0;
     CameraPaths *from = &starts->ready, *to = &starts->taken;
     for (; ended; ended &= ended - 1) {

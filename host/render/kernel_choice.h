@@ -1,0 +1,21 @@
+// Which kernel renders under --specialise auto: one compiled for this scene, or the one for all scenes.
+#pragma once
+
+#include "device/context.h"
+
+namespace opal {
+
+// On a CPU compiling a scene's own kernel costs 2 to 4 CPU seconds, and saves 0.1 CPU microseconds a path of a simple
+// scene (scripts/README.md): so many paths pay for it.
+constexpr double paths_that_pay = 1 << 24;
+
+// Are the paths so few that the general kernel has rendered them sooner, as it need not be compiled for the scene? The
+// answer depends on what is asked alone, never on a cache or a clock, so that a command always gives the same bits.
+// GPUs' compilers take longer for the general kernel than for a scene's own.
+// paths: pixels times samples; infinite where only an error is asked.
+bool suits_general_kernel(const DeviceInfo &device, double paths);
+
+// The paths that a render of so many seconds is taken to have.
+double paths_in(double seconds);
+
+} // namespace opal

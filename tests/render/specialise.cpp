@@ -1,0 +1,74 @@
+// --specialise auto: the general kernel renders where few paths are asked, and is one for all scenes.
+#include "image/image.h"
+#include "render/kernel_choice.h"
+#include "support/mutants.h"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+using namespace opal;
+using namespace opal::test;
+
+namespace {
+
+const std::string scenes = OPAL_SOURCE_DIR "/scenes/";
+
+nlohmann::json rendered(const ScratchFolder &folder, const std::string &arguments) {
+    const Outcome outcome = run_shell("cd " + folder.path().string() + " && " OPAL_BINARY " render --device cpu " +
+                                      arguments + " --quiet --no-png -o a.exr --json -");
+    INFO(arguments << "\n" << outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    return nlohmann::json::parse(outcome.out);
+}
+
+} // namespace
+
+TEST_CASE("On a CPU few paths suit the general kernel, on a GPU none do", "[specialise]") {
+    DeviceInfo cpu, gpu;
+    cpu.type = "cpu";
+    gpu.type = "gpu";
+    CHECK(suits_general_kernel(cpu, paths_that_pay - 1));
+    CHECK_FALSE(suits_general_kernel(cpu, paths_that_pay));
+    CHECK_FALSE(suits_general_kernel(cpu, INFINITY));
+    CHECK_FALSE(suits_general_kernel(gpu, 1));
+    CHECK(suits_general_kernel(cpu, paths_in(1)));
+    CHECK_FALSE(suits_general_kernel(cpu, paths_in(60)));
+}
+
+TEST_CASE("The kernel is chosen by what is asked, and stands in JSON and EXR", "[specialise]") {
+    const ScratchFolder folder;
+    const std::string box = scenes + "cbox_mis.xml --width 16 ";
+    const auto kernel_of = [&](const std::string &options) {
+        const nlohmann::json report = rendered(folder, box + options);
+        CHECK(std::get<std::string>(read_exr(folder / "a.exr").metadata.at("opal.kernel")) == report["kernel"]);
+        return report["kernel"].get<std::string>() + " by " + report["strategy"]["specialise"].get<std::string>();
+    };
+    CHECK(kernel_of("--spp 1") == "general by auto");
+    CHECK(kernel_of("--spp 1 --time 1h") == "general by auto");
+    CHECK(kernel_of("--time 10ms") == "general by auto");
+    CHECK(kernel_of("--spp 200000 --time-limit 1ms") == "general by auto");
+    CHECK(kernel_of("--target-error 50%") == "special by auto");
+    CHECK(kernel_of("--spp 1 --specialise on") == "special by on");
+    CHECK(kernel_of("--target-error 50% --specialise off") == "general by off");
+}
+
+TEST_CASE("After opal cache --warm no scene or strategy compiles a kernel for few paths", "[specialise]") {
+    const ScratchFolder folder;
+    const std::string cache = "POCL_CACHE_DIR=" + (folder / "cache").string() + " " OPAL_BINARY " ";
+    const auto kernels = [&](const std::string &flags) {
+        const Outcome outcome = run_shell(cache + "cache --device cpu --json - " + flags);
+        INFO(outcome.err);
+        REQUIRE(outcome.exit_code == 0);
+        return nlohmann::json::parse(outcome.out)["kernels"].get<int>();
+    };
+    CHECK(kernels("") == 0);
+    const int warm = kernels("--warm");
+    CHECK(warm > 0);
+    for (const char *scene : {"cbox_mis.xml", "mixed_room.xml", "many_lights.xml --lighting emitter --sampler sobol"}) {
+        const Outcome outcome = run_shell("cd " + folder.path().string() + " && " + cache + "render --device cpu " +
+                                          scenes + scene + " --width 16 --spp 1 --quiet -o a.exr");
+        INFO(outcome.err);
+        CHECK(outcome.exit_code == 0);
+    }
+    CHECK(kernels("") == warm);
+}
