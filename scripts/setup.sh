@@ -7,7 +7,7 @@ packages=(
     g++ cmake ninja-build python3                                # to build
     ocl-icd-opencl-dev opencl-headers opencl-clhpp-headers       # OpenCL's loader and headers
     pocl-opencl-icd                                              # an OpenCL device: the CPU
-    libopenexr-dev libpng-dev libpugixml-dev                     # images and XML
+    libopenexr-dev libpng-dev zlib1g-dev libpugixml-dev          # images and XML
     libtinyobjloader-dev                                         # meshes
     libfmt-dev nlohmann-json3-dev                                # text, JSON
     catch2                                                       # tests

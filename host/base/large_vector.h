@@ -20,25 +20,29 @@ void drop_pages(void *memory, std::size_t bytes);
 // of the largest one that was freed before, up to 32 MiB, and they add to the peak of what comes later.
 void return_large_blocks();
 
+// Smaller arrays are those of std::vector.
+constexpr bool is_large(std::size_t bytes) { return bytes >= huge_page; }
+
 template <class T> struct LargeAllocator {
     using value_type = T;
     LargeAllocator() = default;
     template <class U> LargeAllocator(const LargeAllocator<U> &) {}
 
     T *allocate(std::size_t count) {
-        void *memory = ::operator new(count * sizeof(T), alignment(count));
-        advise_huge_pages(memory, count * sizeof(T));
+        const std::size_t bytes = count * sizeof(T);
+        if (!is_large(bytes))
+            return static_cast<T *>(::operator new(bytes));
+        void *memory = ::operator new(bytes, std::align_val_t(huge_page));
+        advise_huge_pages(memory, bytes);
         return static_cast<T *>(memory);
     }
-    void deallocate(T *memory, std::size_t count) { ::operator delete(memory, alignment(count)); }
-    bool operator==(const LargeAllocator &) const { return true; }
-
-private:
-    // The largest alignment of a type of OpenCL's: a CPU device can use the array in place.
-    static constexpr std::size_t largest_type = 128;
-    static std::align_val_t alignment(std::size_t count) {
-        return std::align_val_t(count * sizeof(T) < huge_page ? largest_type : huge_page);
+    void deallocate(T *memory, std::size_t count) {
+        if (is_large(count * sizeof(T)))
+            ::operator delete(memory, std::align_val_t(huge_page));
+        else
+            ::operator delete(memory);
     }
+    bool operator==(const LargeAllocator &) const { return true; }
 };
 
 template <class T> using LargeVector = std::vector<T, LargeAllocator<T>>;

@@ -28,9 +28,9 @@ template <class Rows> cl::Buffer make_table(const Device &device, const Rows &ro
                        empty ? nullptr : rows.data(), what);
 }
 
-// The same, but a CPU device reads the vector's own memory: that must stay as it is for as long as the buffer is used.
+// The same, but a CPU device reads the memory of a large vector: that must stay as it is while the buffer is used.
 template <class T> cl::Buffer share_table(const Device &device, const LargeVector<T> &rows, const std::string &what) {
-    if (rows.empty() || !shares_memory(device))
+    if (!is_large(sizeof(T) * rows.size()) || !shares_memory(device))
         return make_table(device, rows, what);
     return make_buffer(device, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, sizeof(T) * rows.size(), rows.data(), what);
 }

@@ -164,18 +164,18 @@ SceneDescription plane_of_copies(double copies) { return with_copies(open_plane(
 // floats are dense.
 SceneDescription light_of_triangles(double count) {
     const unsigned n = unsigned(count);
-    TriangleMesh strip;
+    std::vector<Vec3> positions;
     std::vector<double> ends = {0};
     for (unsigned i = 0; i < n; i++)
         ends.push_back(ends.back() + std::pow(10.0, n > 1 ? 12.0 * i / (n - 1) - 12 : 0));
     for (double end : ends)
         for (double z : {-0.3, 0.3})
-            strip.positions.push_back({0.8 * end / ends.back(), 0.8, z});
+            positions.push_back({0.8 * end / ends.back(), 0.8, z});
     std::vector<std::array<unsigned, 3>> triangles;
     for (unsigned i = 0; i < n; i++)
         for (const auto &t : {std::array{2 * i, 2 * i + 2, 2 * i + 1}, std::array{2 * i + 1, 2 * i + 2, 2 * i + 3}})
             triangles.push_back(t);
-    return floor_under(light(mesh_of(std::move(strip.positions), std::move(triangles)), 3), diffuse(0.5));
+    return floor_under(light(mesh_of(positions, triangles), 3), diffuse(0.5));
 }
 
 SceneDescription many_lights(double count) {

@@ -96,8 +96,8 @@ private:
 
     std::string file_;
     Transform to_world_;
-    std::vector<Vec3> positions_, normals_; // in world space; normals unit, or zero where they are missing
-    std::vector<std::array<float, 2>> uvs_; // NaN where they are missing
+    LargeVector<Vec3> positions_, normals_; // in world space; normals unit, or zero where they are missing
+    LargeVector<std::array<float, 2>> uvs_; // NaN where they are missing
     size_t positions_so_far_ = 0, normals_so_far_ = 0, uvs_so_far_ = 0;
     bool complete_ = false;    // all elements are known
     bool reads_again_ = false; // a face has named an element that is not
@@ -329,9 +329,9 @@ void ObjReader::tell(const TriangleMesh &mesh) const {
 // Keeps the entries that corners of `triangles` refer to by index_of(corner), renumbered in the order of their first
 // use.
 template <class Entry, class Triangles, class IndexOf>
-std::vector<Entry> compact(const std::vector<Entry> &all, Triangles &triangles, const IndexOf &index_of) {
-    std::vector<Entry> used;
-    std::vector<unsigned> renumbered(all.size(), none);
+LargeVector<Entry> compact(const LargeVector<Entry> &all, Triangles &triangles, const IndexOf &index_of) {
+    LargeVector<Entry> used;
+    LargeVector<unsigned> renumbered(all.size(), none);
     for (auto &triangle : triangles)
         for (auto &corner : triangle) {
             unsigned &index = index_of(corner);

@@ -28,9 +28,9 @@ Bsdf phong(double exponent, double reflectance) {
     return bsdf_phong_record{.kd = reflectance, .ks = reflectance, .n = exponent};
 }
 
-TriangleMesh mesh_of(std::vector<Vec3> positions, const std::vector<std::array<unsigned, 3>> &triangles) {
+TriangleMesh mesh_of(const std::vector<Vec3> &positions, const std::vector<std::array<unsigned, 3>> &triangles) {
     TriangleMesh mesh;
-    mesh.positions = std::move(positions);
+    mesh.positions.assign(positions.begin(), positions.end());
     for (const auto &[a, b, c] : triangles)
         mesh.triangles.push_back({{{a, OPAL_NONE}, {b, OPAL_NONE}, {c, OPAL_NONE}}});
     return mesh;

@@ -44,7 +44,7 @@ namespace {
 // The entries of an array that one part after another uses, renumbered in the order of their first use.
 template <class Entry> class Renumbering {
 public:
-    explicit Renumbering(const std::vector<Entry> &all) : all_(all), renumbered_(all.size(), {OPAL_NONE, 0}) {}
+    explicit Renumbering(const LargeVector<Entry> &all) : all_(all), renumbered_(all.size(), {OPAL_NONE, 0}) {}
 
     void begin_part() {
         part_++;
@@ -61,13 +61,13 @@ public:
         }
         index = number;
     }
-    std::vector<Entry> used() const { return used_; }
+    LargeVector<Entry> used() const { return used_; }
 
 private:
-    const std::vector<Entry> &all_;
+    const LargeVector<Entry> &all_;
     std::vector<std::pair<unsigned, size_t>> renumbered_; // the new index, and the part that it holds for
     size_t part_ = 0;
-    std::vector<Entry> used_; // by the present part
+    LargeVector<Entry> used_; // by the present part
 };
 
 } // namespace

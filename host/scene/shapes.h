@@ -2,6 +2,7 @@
 // the device says an overload of add_primitives (flatten/geometry.cpp).
 #pragma once
 
+#include "base/large_vector.h"
 #include "base/math.h"
 
 #include <array>
@@ -25,15 +26,15 @@ struct Extent {
 };
 
 struct TriangleMesh {
-    std::vector<Vec3> positions;
-    std::vector<Vec3> normals; // unit; may be empty
+    LargeVector<Vec3> positions;
+    LargeVector<Vec3> normals; // unit; may be empty
     struct Corner {
         unsigned position, normal;
     };                                            // indices; normal OPAL_NONE: the geometric normal
-    std::vector<std::array<Corner, 3>> triangles; // degenerate ones already dropped
-    std::vector<std::array<float, 2>> uvs;        // texture coordinates, v upwards; may be empty
+    LargeVector<std::array<Corner, 3>> triangles; // degenerate ones already dropped
+    LargeVector<std::array<float, 2>> uvs;        // texture coordinates, v upwards; may be empty
     // Indices of uvs, one array a triangle, OPAL_NONE where a corner has none; empty where no triangle has any.
-    std::vector<std::array<unsigned, 3>> uv_corners;
+    LargeVector<std::array<unsigned, 3>> uv_corners;
 
     Extent extent() const; // of the positions that triangles use
     TriangleMesh moved(const Transform &by) const;

@@ -311,7 +311,7 @@ TEST_CASE_METHOD(MtlFixture, "each mesh keeps the texture coordinates of its tri
     const auto &second = std::get<TriangleMesh>(meshes[1].shape);
     REQUIRE(second.uvs.size() == 2);
     CHECK(second.uvs[0] == std::array<float, 2>{0, 0.25});
-    CHECK(second.uv_corners == std::vector<std::array<unsigned, 3>>{{0, 1, OPAL_NONE}});
+    CHECK(second.uv_corners == LargeVector<std::array<unsigned, 3>>{{0, 1, OPAL_NONE}});
 }
 
 TEST_CASE_METHOD(MtlFixture, "a library that is missing is told, with its place", "[mtl]") {

@@ -10,11 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <cstring>
 #include <random>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 using namespace opal;
 using namespace opal::test;
@@ -93,38 +89,6 @@ TEST_CASE("Scenes share the program of the film", "[film]") {
     CAPTURE(counts);
     if (counts[0] > 0) // another driver keeps none there
         CHECK(counts == std::vector<size_t>{2, 3, 4, 4});
-}
-
-TEST_CASE("A render of 1920 x 1080 pixels takes at most 124 bytes for each", "[film]") {
-    const ScratchFolder folder;
-    std::string gaussian = read_text(OPAL_SOURCE_DIR "/scenes/cbox_mis.xml");
-    const size_t filter = gaussian.find("type=\"box\"");
-    REQUIRE(filter != std::string::npos);
-    gaussian.replace(filter, std::strlen("type=\"box\""), "type=\"gaussian\"");
-    // The largest memory that the process had at once, less that of a small picture.
-    const auto peak = [&](const std::string &scene, int width, int height) {
-        const std::string w = std::to_string(width), h = std::to_string(height), out = folder / "out.exr";
-        const pid_t child = fork();
-        if (child == 0) {
-            execl(OPAL_BINARY, OPAL_BINARY, "render", scene.c_str(), "--width", w.c_str(), "--height", h.c_str(),
-                  "--spp", "6", "--device", wanted_device().c_str(), "--quiet", "-o", out.c_str(), nullptr);
-            _exit(127);
-        }
-        int status = 0;
-        rusage used{};
-        REQUIRE(wait4(child, &status, 0, &used) == child);
-        REQUIRE((WIFEXITED(status) && WEXITSTATUS(status) == 0));
-        return 1024.0 * double(used.ru_maxrss);
-    };
-    std::filesystem::create_directory_symlink(OPAL_SOURCE_DIR "/scenes/meshes", folder / "meshes");
-    for (const std::string &scene :
-         {std::string(OPAL_SOURCE_DIR "/scenes/cbox_mis.xml"), folder.write("gaussian.xml", gaussian).string()}) {
-        peak(scene, 16, 16); // compiles
-        const double bytes = (peak(scene, 1920, 1080) - peak(scene, 16, 16)) / (1920 * 1080);
-        INFO(scene << ": " << bytes << " bytes a pixel");
-        CHECK(bytes <= 124);
-        CHECK(bytes > 60); // the film alone: else this measures nothing
-    }
 }
 
 // Grey samples of noise around a radiance of 1, count(p) of them in pixel p.

@@ -53,3 +53,25 @@ TEST_CASE("A render of a million triangles takes at most 110 bytes for each", "[
     CHECK(bytes <= 110);
     CHECK(bytes > 60); // the tree alone: else this measures nothing
 }
+
+TEST_CASE("A render of 1920 x 1080 pixels takes at most 124 bytes for each, whatever its filter", "[memory]") {
+    const ScratchFolder folder;
+    const std::string box = OPAL_SOURCE_DIR "/scenes/cbox_mis.xml";
+    std::string gaussian = read_text(box);
+    const std::string filter = "type=\"box\"";
+    REQUIRE(gaussian.find(filter) != std::string::npos);
+    gaussian.replace(gaussian.find(filter), filter.size(), "type=\"gaussian\"");
+    std::filesystem::create_directory_symlink(OPAL_SOURCE_DIR "/scenes/meshes", folder / "meshes");
+    for (const std::string &scene : {box, folder.write("gaussian.xml", gaussian).string()}) {
+        const auto peak = [&](int width, int height) {
+            return peak_bytes_of_opal({"render", scene, "--width", std::to_string(width), "--height",
+                                       std::to_string(height), "--spp", "6", "--device", wanted_device(), "--quiet",
+                                       "-o", folder / "out.exr"});
+        };
+        peak(16, 16); // compiles
+        const double bytes = (peak(1920, 1080) - peak(16, 16)) / (1920.0 * 1080);
+        INFO(scene << ": " << bytes << " bytes a pixel");
+        CHECK(bytes <= 124);
+        CHECK(bytes > 60); // the film alone: else this measures nothing
+    }
+}
