@@ -30,19 +30,22 @@ kernel void render(SCENE_PARAMETERS, global float *samples, uint first_item, uin
                            chunk_samples, pass_first, pass_samples);
     Starts starts;
     prepare_starts(&scene, queue, &starts);
+    // Paths start in one place, as their code is long. Of the loops that do so NVIDIA's compiler makes the fastest code
+    // of this one, which leaves at its end alone: 1.6 times as fast in cbox_mis on an H200 as one with a break.
     mask active = NO_LANES;
-    for (uint ended = lanes_of(ALL_LANES);;) { // the lanes whose path has ended, a bit each
-        if (ended) {
-            active = active | refill(&scene, &starts, &path, ended);
-            if (!ANY(active)) break;
+    uint ended = lanes_of(ALL_LANES); // the lanes whose path has ended, a bit each
+    do {
+        if (ended) active = active | refill(&scene, &starts, &path, ended);
+        ended = 0;
+        if (ANY(active)) {
+            Hit hit = closest_hit(&scene, path.ray, active);
+            if (OPAL_REPEAT_traversal) hit = closest_hit(&scene, same_ray(path.ray, hit.t > -1), active);
+            add_count(&scene, COUNTER_rays, count_lanes(active));
+            add_count(&scene, COUNTER_rounds, 1);
+            mask active_next = integrator_step(&scene, &path, hit, active);
+            ended = lanes_of(active & !active_next);
+            active = active_next;
+            if (ended) retire(&scene, samples, &starts.queue, &path, ended);
         }
-        Hit hit = closest_hit(&scene, path.ray, active);
-        if (OPAL_REPEAT_traversal) hit = closest_hit(&scene, same_ray(path.ray, hit.t > -1), active);
-        add_count(&scene, COUNTER_rays, count_lanes(active));
-        add_count(&scene, COUNTER_rounds, 1);
-        mask active_next = integrator_step(&scene, &path, hit, active);
-        ended = lanes_of(active & !active_next);
-        active = active_next;
-        if (ended) retire(&scene, samples, &starts.queue, &path, ended);
-    }
+    } while (ended || ANY(active));
 }
