@@ -23,7 +23,7 @@ constexpr unsigned long long sample_bytes = 4ull * OPAL_SAMPLE_FLOATS;
 constexpr unsigned long long max_sample_buffer_bytes = 256ull << 20,
                              max_buffer_samples = (1ull << 32) / OPAL_SAMPLE_FLOATS;
 // CPU: the film and the samples of a pass take about so many bytes a pixel. Small images may take more.
-constexpr unsigned long long cpu_bytes_a_pixel = 120, small_sample_buffer_bytes = 32ull << 20;
+constexpr unsigned long long cpu_bytes_a_pixel = 120, small_sample_buffer_bytes = 64ull << 20;
 
 // Pixels of a band of the film, whose sums are a buffer of 29 MB. PoCL compiles kernels apart for launches of more than
 // 65535 work-groups: at 8 lanes gathering has no more, as in small images.
@@ -52,11 +52,10 @@ std::vector<unsigned> spread_order(unsigned count) {
 
 } // namespace
 
-// The text is the same for all scenes, because it asks for no feature: wide filters draw by the settings' sampler.
-cl::Program build_film_program(const Device &device, const BuildOptions &options, const Sources &sources,
+cl::Program build_film_program(const Device &device, const BuildOptions &options, const Sources &sources, int sampler,
                                double *seconds) {
-    Features features;
-    features.axes[AXIS_sampler] = -1;
+    Features features; // no feature: the text is the same for all scenes
+    features.axes[AXIS_sampler] = sampler;
     const BuildOptions build{.lanes = options.lanes, .math = options.math, .kernels = "kernels/film.cl"};
     return build_program(device, program_text(features, build, sources), build, seconds);
 }
@@ -108,7 +107,9 @@ Renderer::Renderer(const Device &device, FlatScene scene, const RenderOptions &o
     double film_seconds = 0;
     const cl::Program program = build_program(device, program_text(scene.features, options.build, *options.sources),
                                               options.build, &compile_seconds_);
-    const cl::Program film_program = build_film_program(device, options.build, *options.sources, &film_seconds);
+    const int film_sampler = wide_filter_ ? scene.features.axes[AXIS_sampler] : -1;
+    const cl::Program film_program =
+        build_film_program(device, options.build, *options.sources, film_sampler, &film_seconds);
     on_device_->tables = std::move(scene);
     on_device_->scene = upload_scene(device, on_device_->tables);
     if (!shares_memory(device))

@@ -25,9 +25,9 @@ struct RenderOptions {
 };
 
 // The kernels that add a pass to the film (cl/kernels/film.cl), compiled once for all scenes: drivers keep programs by
-// their text. seconds: what it took.
+// their text. sampler: the one that gathering for a wide filter draws by; -1: the settings say. seconds: what it took.
 cl::Program build_film_program(const Device &device, const BuildOptions &options, const Sources &sources,
-                               double *seconds = nullptr);
+                               int sampler = -1, double *seconds = nullptr);
 
 class Renderer {
 public:
