@@ -16,7 +16,8 @@
 // Are there primitives outside the face list? A program for all scenes finds a root without children where there are
 // none.
 static bool has_tree(const Scene *scene) {
-    return GENERAL ? scene->nodes->child[0] != OPAL_NONE : OPAL_HAS_tree;
+    if (!OPAL_HAS_tree) return false;
+    return !GENERAL || scene->nodes->child[0] != OPAL_NONE;
 }
 
 // The nearest hit of each active lane.

@@ -25,9 +25,10 @@ Findings run_rays(const Device &device, const SelftestOptions &options) {
         scene.strategy.specialise = specialise ? Specialise::on : Specialise::off;
         FlatScene flat = flatten(scene, options.build.lanes, specialise);
         if (specialise) { // one program for all scenes without a tree
-            const bool tree = flat.features[FEATURE_tree];
+            const bool tree = flat.features[FEATURE_tree], list = flat.features[FEATURE_face_list];
             flat.features = scene_of_bsdfs({}).features;
             flat.features.list[FEATURE_tree].on = tree;
+            flat.features.list[FEATURE_face_list].on = list;
 #define OPAL_WITHOUT_BSDF(name, traits) flat.features.list[FEATURE_bsdf_##name].on = false;
             OPAL_ALL_BSDFS(OPAL_WITHOUT_BSDF)
 #undef OPAL_WITHOUT_BSDF

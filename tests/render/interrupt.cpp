@@ -54,7 +54,7 @@ TEST_CASE("An interrupted first pass tells of the pixels without a sample, and c
         return;
     }
     // 32 launches of long paths, some 20 CPU seconds. The kernel is compiled before, so that CPU time is rendering.
-    const std::string render = OPAL_SOURCE_DIR "/scenes/furnace.xml --rr off --max-depth 100 --no-png";
+    const std::string render = OPAL_SOURCE_DIR "/scenes/furnace.xml --specialise on --rr off --max-depth 100 --no-png";
     REQUIRE(run_shell(OPAL_BINARY " " + render + " --width 8 --spp 1 -o /dev/null").exit_code == 0);
     for (const std::string rule : {"", " --target-error 10%", " --time 1h"}) {
         INFO(rule);
