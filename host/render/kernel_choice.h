@@ -5,9 +5,10 @@
 
 namespace opal {
 
-// On a CPU compiling a scene's own kernel costs 2 to 4 CPU seconds, and saves 0.1 CPU microseconds a path of a simple
-// scene (scripts/README.md): so many paths pay for it.
-constexpr double paths_that_pay = 1 << 24;
+// On a CPU compiling a scene's own kernel costs 1.7 to 3.6 CPU seconds, and saves 0.03 to 0.04 CPU microseconds a path:
+// from 41 M paths on it pays for one of five scenes, from 98 M on for all (scripts/README.md). This is the power of two
+// below that.
+constexpr double paths_that_pay = 1 << 25;
 
 // Are the paths so few that the general kernel has rendered them sooner, as it need not be compiled for the scene? The
 // answer depends on what is asked alone, never on a cache or a clock, so that a command always gives the same bits.

@@ -95,7 +95,7 @@ const std::vector<StrategyOption> numbers = {
      {"auto", "1", "4", "8", "16"}},
     {"specialise", "specialise", "boolean", "auto|on|off",
      "on: compile a kernel for what the scene needs; off: the general kernel, which is compiled once for all scenes; "
-     "auto: off on a CPU for few paths (fewer than 2^24, pixels times samples), else on [auto]",
+     "auto: off on a CPU for few paths (fewer than 2^25, pixels times samples), else on [auto]",
      set_specialise, [](const Strategy &s) { return specialise_rows[size_t(s.specialise)].name; },
      names_of(specialise_rows)},
 };
