@@ -14,7 +14,7 @@
 #endif
 // Is this a program for all scenes?
 #define GENERAL (OPAL_AXIS_integrator < 0)
-// A function with several callers, each of which a program for all scenes would inline a copy into: there it is called.
+// Marks a long function with several callers: a program for all scenes calls it instead of inlining a copy for each.
 #if GENERAL && defined(__clang__)
 #define CALLED __attribute__((noinline))
 #else

@@ -50,12 +50,13 @@ struct Contents {
 
 Contents contents_of(const fs::path &folder) {
     Contents contents;
-    std::error_code error;
+    std::error_code error, of_file; // a file may go meanwhile, as PoCL renames some
     for (fs::recursive_directory_iterator at(folder, fs::directory_options::skip_permission_denied, error), end;
          !error && at != end; at.increment(error)) {
-        if (!at->is_regular_file(error))
+        const std::uintmax_t bytes = at->is_regular_file(of_file) ? at->file_size(of_file) : 0;
+        if (of_file || bytes == 0)
             continue;
-        contents.bytes += at->file_size(error);
+        contents.bytes += bytes;
         contents.kernels += at->path().extension() == ".so";
     }
     return contents;

@@ -183,8 +183,14 @@ Request prepare(const Options &o) {
 void write_image(const Image &image, const ImageFiles &files, const Display &display) {
     const RunningProgress progress("writing");
     std::future<void> png;
-    if (!files.png.empty())
-        png = std::async(std::launch::async, [&] { write_png(image, files.png, display); });
+    const auto write = [&] { write_png(image, files.png, display); };
+    if (!files.png.empty()) {
+        try {
+            png = std::async(std::launch::async, write);
+        } catch (const std::system_error &) { // a limit on threads: the PNG is written after the EXR
+            png = std::async(std::launch::deferred, write);
+        }
+    }
     if (files.to_stdout)
         print_text(exr_bytes(image));
     if (!files.exr.empty())
@@ -227,16 +233,14 @@ int report(const Request &request, RenderedFilm &rendered, const RenderReport &r
     return interrupt_exit_code();
 }
 
-// The paths that are asked, for suits_general_kernel. A goal for the error asks for as many as it takes.
-double paths_asked(const Request &request) {
-    if (request.rule.relative_error > 0)
-        return INFINITY;
+// The paths that are asked at the most, for suits_general_kernel; a goal for the error alone sets no bound.
+double paths_asked(const Request &request, const DeviceInfo &device) {
     const Crop window = request.scene.camera.window();
     const double pixels = double(window.width) * window.height;
     double paths = request.spp ? pixels * request.spp : INFINITY;
     for (const double seconds : {request.rule.seconds, request.rule.wall_seconds})
         if (seconds > 0)
-            paths = std::min(paths, paths_in(seconds));
+            paths = std::min(paths, paths_in(device, seconds));
     return paths;
 }
 
@@ -252,7 +256,7 @@ int render_scene(const Options &o) {
         info(choice->text());
         scene.strategy = choice->strategy;
     }
-    scene.strategy.few_paths = suits_general_kernel(pick.info, paths_asked(request));
+    scene.strategy.few_paths = suits_general_kernel(pick.info, paths_asked(request, pick.info));
     const Stopwatch bvh;
     FlatScene flat = flatten_and_free(scene, build.lanes);
     const double bvh_seconds = bvh.seconds();

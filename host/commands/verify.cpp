@@ -142,7 +142,7 @@ int verify(const Options &o, SceneDescription scene, const std::filesystem::path
     simplify_image(scene.camera, o);
     scene.spp = strata;
     const DevicePick pick = choose_device(o.device);
-    scene.strategy.few_paths = suits_general_kernel(pick.info, paths_in(o.budget));
+    scene.strategy.few_paths = suits_general_kernel(pick.info, paths_in(pick.info, o.budget));
     const std::vector<NamedStrategy> strategies = choose(scene, o);
     info(fmt::format("verify  {}: {} strategies, {} x {} pixels, {} in all, seed {}", scene.file.string(),
                      strategies.size(), scene.camera.width, scene.camera.height, duration_text(o.budget), o.seed));

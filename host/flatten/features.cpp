@@ -223,10 +223,10 @@ Features find_features(const SceneDescription &description, const FlatScene &sce
     const bool specialise = !description.strategy.is_general();
     for (unsigned i = 0; i < FEATURE_COUNT; i++)
         features.list[i] = specialise ? Feature{decisions[i].on, decisions[i].reason}
-                                      : Feature{general_has(i, lanes), "--specialise off"};
+                                      : Feature{general_has(i, lanes), "the general kernel"};
     for (int axis = 0; axis < AXIS_COUNT; axis++) {
         features.axes[axis] = specialise ? description.strategy[axis] : -1;
-        features.axis_reasons[axis] = specialise ? "chosen" : "--specialise off: decided at run time";
+        features.axis_reasons[axis] = specialise ? "chosen" : "the general kernel: decided at run time";
     }
     if (specialise) {
         features.axes[AXIS_hemisphere] = find_hemisphere(description, scene, features.axis_reasons[AXIS_hemisphere]);

@@ -313,8 +313,11 @@ std::vector<std::string> zips_blocks(const Image &image, const Imf::Header &head
             blocks[i] = chunks(i * lines, std::min(height, (i + 1) * lines));
     };
     std::vector<std::future<void>> others;
-    for (size_t i = 1; i < std::min<size_t>(blocks.size(), std::thread::hardware_concurrency()); i++)
-        others.push_back(std::async(std::launch::async, work));
+    try {
+        for (size_t i = 1; i < std::min<size_t>(blocks.size(), std::thread::hardware_concurrency()); i++)
+            others.push_back(std::async(std::launch::async, work));
+    } catch (const std::system_error &) { // a limit on threads: those that there are do the work
+    }
     work();
     for (std::future<void> &other : others)
         other.get();
@@ -360,7 +363,7 @@ std::string exr_bytes(const Image &image) {
     Imf::Xdr::write<Imf::StreamIO>(start, Imf::EXR_VERSION | (has_long_names(header) ? Imf::LONG_NAMES_FLAG : 0));
     header.writeTo(start);
     std::string bytes = start.take();
-    const std::vector<std::string> blocks = zips_blocks(image, header);
+    std::vector<std::string> blocks = zips_blocks(image, header);
     size_t size = bytes.size() + sizeof(uint64_t) * size_t(image.height);
     for (const std::string &block : blocks)
         size += block.size();
@@ -371,8 +374,10 @@ std::string exr_bytes(const Image &image) {
             append_bytes(bytes, place);
             place += chunk_size(block, at);
         }
-    for (const std::string &block : blocks)
+    for (std::string &block : blocks) {
         bytes += block;
+        std::string().swap(block);
+    }
     return bytes;
 }
 

@@ -97,7 +97,7 @@ private:
     std::vector<png_byte> row_;
 };
 
-// Is the picture, by some of its rows, noise? Of each row as differences of neighbours, which are alike in all filters.
+// Is the picture noise? Looks at some rows, as the differences of neighbours that PNG's filters make of them.
 bool is_noisy(Rows &rows, size_t height) {
     constexpr size_t sampled = 16;
     std::vector<unsigned char> bytes;
@@ -123,8 +123,11 @@ std::string png_bytes(const Image &image, const Display &display) {
     Rows rows(image, display);
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, throw_error, ignore_warning);
     png_infop info = png ? png_create_info_struct(png) : nullptr;
-    const std::unique_ptr<png_structp, void (*)(png_structp *)> freed(
-        &png, [](png_structp *made) { png_destroy_write_struct(made, nullptr); });
+    struct Made {
+        png_structp png;
+        png_infop info;
+        ~Made() { png_destroy_write_struct(&png, &info); }
+    } const made{png, info};
     if (!info)
         throw std::bad_alloc();
     png_set_write_fn(png, &bytes, append_to_string, nullptr);

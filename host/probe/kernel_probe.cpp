@@ -67,7 +67,7 @@ KernelProbe::KernelProbe(const Device &device, const FlatScene &scene, const Bui
     : device_(device), scene_(scene), lanes_(build.lanes),
       on_device_(std::make_unique<OnDevice>(
           OnDevice{build_program(device, program_text(scene.features, with_kernels(build), sources), build),
-                   upload_scene(device, scene)})) {}
+                   upload_scene(device, scene_)})) {} // its buffers may share the memory of scene_
 
 KernelProbe::~KernelProbe() = default;
 

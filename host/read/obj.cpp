@@ -351,9 +351,9 @@ ObjFile ObjReader::finish() && {
     free_text();
     TriangleMesh mesh = std::move(faces_.mesh);
     mesh.positions = compact(positions_, mesh.triangles, [](Corner &corner) -> unsigned & { return corner.position; });
-    positions_ = {};
+    decltype(positions_)().swap(positions_); // `= {}` would keep its memory
     mesh.normals = compact(normals_, mesh.triangles, [](Corner &corner) -> unsigned & { return corner.normal; });
-    normals_ = {};
+    decltype(normals_)().swap(normals_);
     mesh.uvs = compact(uvs_, mesh.uv_corners, [](unsigned &index) -> unsigned & { return index; });
     tell(mesh);
     return {std::move(mesh), std::move(materials_), std::move(faces_.runs), std::move(libraries_)};

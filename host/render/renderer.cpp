@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <stdexcept>
 
 namespace opal {
 
@@ -26,7 +26,7 @@ constexpr unsigned long long max_sample_buffer_bytes = 256ull << 20,
 constexpr unsigned long long cpu_bytes_a_pixel = 120, small_sample_buffer_bytes = 64ull << 20;
 
 // Pixels of a band of the film, whose sums are a buffer of 29 MB. PoCL compiles kernels apart for launches of more than
-// 65535 work-groups: at 8 lanes gathering has no more, as in small images.
+// 65535 work-groups: at 8 lanes a band has no more, so images of all sizes share one compilation.
 constexpr unsigned band_pixels = 8 * 65535;
 
 // A work-item renders one chunk of the samples of one tile. Tiles are cut into chunks for about so many work-items a
@@ -155,10 +155,12 @@ void Renderer::set_film_arguments() {
 }
 
 void Renderer::share_film(const Renderer &other) {
-    assert(pixels_ == other.pixels_ && buffer_spp_ == other.buffer_spp_);
+    if (pixels_ != other.pixels_ || buffer_spp_ != other.buffer_spp_ || wide_filter_ != other.wide_filter_)
+        throw std::logic_error("share_film: the other renderer's film is of another shape");
     on_device_->samples = other.on_device_->samples;
     on_device_->bands = other.on_device_->bands;
     on_device_->invalid = other.on_device_->invalid;
+    empty_ = true;
     set_film_arguments();
 }
 

@@ -128,10 +128,10 @@ TEST_CASE("The general kernel renders what the specialised ones do", "[lanes]") 
         {{"integrator", "direct_lighting"}, {"lighting", "emitter"}, {"emitter-choice", "uniform"}},
         {{"integrator", "path"}, {"lighting", "bsdf"}, {"rr", "fixed"}},
         {{"integrator", "path"}, {"lighting", "mis"}, {"triangle-choice", "uniform"}, {"sampler", "sobol"}}};
-    // In double, where the device has it: the general kernel lists no faces, and what it rounds otherwise long paths
-    // through glass magnify.
+    // In double, where the device has it: the general kernel rounds some results otherwise, and long paths
+    // through glass magnify that.
     const MathMode math = device().info.fp64 ? MathMode::double_precision : MathMode::precise;
-    SceneDescription scene = large_gallery(25, 21); // with a tree, as the general kernel has
+    SceneDescription scene = large_gallery(25, 21);
     for (Overrides how : strategies) {
         const Film special = at_lanes(strategy_of(scene, how), 0, math);
         how["specialise"] = "off";

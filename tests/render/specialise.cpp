@@ -27,12 +27,13 @@ TEST_CASE("On a CPU few paths suit the general kernel, on a GPU none do", "[spec
     DeviceInfo cpu, gpu;
     cpu.type = "cpu";
     gpu.type = "gpu";
+    cpu.compute_units = 2;
     CHECK(suits_general_kernel(cpu, paths_that_pay - 1));
     CHECK_FALSE(suits_general_kernel(cpu, paths_that_pay));
     CHECK_FALSE(suits_general_kernel(cpu, INFINITY));
     CHECK_FALSE(suits_general_kernel(gpu, 1));
-    CHECK(suits_general_kernel(cpu, paths_in(1)));
-    CHECK_FALSE(suits_general_kernel(cpu, paths_in(60)));
+    CHECK(suits_general_kernel(cpu, paths_in(cpu, 1)));
+    CHECK_FALSE(suits_general_kernel(cpu, paths_in(cpu, 60)));
 }
 
 TEST_CASE("The kernel is chosen by what is asked, and stands in JSON and EXR", "[specialise]") {
@@ -48,6 +49,7 @@ TEST_CASE("The kernel is chosen by what is asked, and stands in JSON and EXR", "
     CHECK(kernel_of("--time 10ms") == "general by auto");
     CHECK(kernel_of("--spp 200000 --time-limit 1ms") == "general by auto");
     CHECK(kernel_of("--target-error 50%") == "special by auto");
+    CHECK(kernel_of("--target-error 50% --spp 64") == "general by auto");
     CHECK(kernel_of("--spp 1 --specialise on") == "special by on");
     CHECK(kernel_of("--target-error 50% --specialise off") == "general by off");
 }
