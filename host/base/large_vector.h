@@ -47,4 +47,7 @@ template <class T> struct LargeAllocator {
 
 template <class T> using LargeVector = std::vector<T, LargeAllocator<T>>;
 
+// Empties a container and frees its memory. Assigning {} keeps it.
+template <class Container> void free_memory(Container &container) { Container().swap(container); }
+
 } // namespace opal

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <sstream>
 
 namespace opal {
 
@@ -73,6 +74,14 @@ std::vector<std::string_view> split(std::string_view text) {
         start = text.find_first_not_of(separators, end);
     }
     return pieces;
+}
+
+std::vector<std::string> lines_of(const std::string &text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);)
+        lines.push_back(line);
+    return lines;
 }
 
 std::vector<double> parse_numbers(std::string_view text, size_t count) {

@@ -18,6 +18,8 @@ double parse_number(std::string_view text); // all of the text; finite, also in 
 std::vector<double> parse_numbers(std::string_view text, size_t count);
 Vec3 parse_triple(std::string_view text);
 
+std::vector<std::string> lines_of(const std::string &text); // without their ends
+
 // The words of a text, separated by commas or blanks.
 std::vector<std::string_view> split(std::string_view text);
 

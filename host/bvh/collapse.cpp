@@ -82,7 +82,6 @@ private:
                 costs.pop_back();
                 costs.back() = fill_table(index, leaf, costs.back(), right);
             } else {
-                tables_[index] = {};
                 costs.emplace_back().fill(leaf);
             }
         }

@@ -4,6 +4,7 @@
 #include "base/exit_code.h"
 #include "base/log.h"
 #include "base/table.h"
+#include "base/values.h"
 #include "commands/commands.h"
 #include "commands/row_text.h"
 
@@ -30,8 +31,7 @@ std::string two_columns(const std::string &left, const std::string &text) {
         page += '\n';
         at = 0;
     }
-    std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);) {
+    for (const std::string &line : lines_of(text)) {
         const size_t indent = help_column + std::min(line.find_first_not_of(' '), line.size());
         page.append(indent - std::min(indent, at), ' ');
         at = indent;

@@ -1,12 +1,13 @@
 // opal man: the manual page, in roff, from the rows of the commands.
 #include "base/exit_code.h"
 #include "base/log.h"
+#include "base/values.h"
 #include "commands/commands.h"
 #include "commands/row_text.h"
 
 #include <fmt/format.h>
 
-#include <sstream>
+#include <algorithm>
 
 namespace opal {
 
@@ -28,8 +29,7 @@ std::string escaped(const std::string &text) {
 // Lines of their own, as the help has them.
 std::string broken(const std::string &text) {
     std::string result;
-    std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);)
+    for (const std::string &line : lines_of(text))
         result += (result.empty() ? "" : ".br\n") +
                   escaped(line.substr(std::min(line.find_first_not_of(' '), line.size()))) + "\n";
     return result;

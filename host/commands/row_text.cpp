@@ -1,24 +1,16 @@
 #include "commands/row_text.h"
 
 #include "base/table.h"
+#include "base/values.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
-#include <sstream>
 
 namespace opal {
 
 namespace {
-
-std::vector<std::string> lines_of(const std::string &text) {
-    std::vector<std::string> lines;
-    std::istringstream stream(text);
-    for (std::string line; std::getline(stream, line);)
-        lines.push_back(line);
-    return lines;
-}
 
 template <class T> std::string range_text(const Range<T> &range) {
     return fmt::format("{:g} to {:g}", double(range.least), double(range.greatest));

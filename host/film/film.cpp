@@ -1,6 +1,7 @@
 #include "film/film.h"
 
 #include "base/color.h"
+#include "base/large_vector.h"
 
 #include <cmath>
 
@@ -76,11 +77,10 @@ Image image_of(const Film &film, bool variance) {
 
 Image take_image(Film &film, bool variance) {
     Image image = image_of(film, variance);
-    Film freed;
-    std::swap(film.sum, freed.sum);
-    std::swap(film.squares, freed.squares);
-    std::swap(film.weighted, freed.weighted);
-    std::swap(film.count, freed.count);
+    free_memory(film.sum);
+    free_memory(film.squares);
+    free_memory(film.weighted);
+    free_memory(film.count);
     return image;
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/json.h"
+#include "base/large_vector.h"
 #include "base/log.h"
 #include "base/read_file.h"
 #include "image/deflate.h"
@@ -376,7 +377,7 @@ std::string exr_bytes(const Image &image) {
         }
     for (std::string &block : blocks) {
         bytes += block;
-        std::string().swap(block);
+        free_memory(block);
     }
     return bytes;
 }

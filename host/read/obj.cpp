@@ -1,6 +1,7 @@
 #include "read/obj.h"
 
 #include "base/error.h"
+#include "base/large_vector.h"
 #include "base/log.h"
 #include "read/obj_statements.h"
 
@@ -351,9 +352,9 @@ ObjFile ObjReader::finish() && {
     free_text();
     TriangleMesh mesh = std::move(faces_.mesh);
     mesh.positions = compact(positions_, mesh.triangles, [](Corner &corner) -> unsigned & { return corner.position; });
-    decltype(positions_)().swap(positions_); // `= {}` would keep its memory
+    free_memory(positions_);
     mesh.normals = compact(normals_, mesh.triangles, [](Corner &corner) -> unsigned & { return corner.normal; });
-    decltype(normals_)().swap(normals_);
+    free_memory(normals_);
     mesh.uvs = compact(uvs_, mesh.uv_corners, [](unsigned &index) -> unsigned & { return index; });
     tell(mesh);
     return {std::move(mesh), std::move(materials_), std::move(faces_.runs), std::move(libraries_)};

@@ -62,7 +62,7 @@ int parse_index(std::string_view word) {
 ObjStatements::ObjStatements(const std::filesystem::path &file)
     : file_(file), text_(read_text_file(file, FileKind::obj)), can_be_read_again_(is_regular_file(file)) {}
 
-void ObjStatements::free_text() { std::string().swap(text_); }
+void ObjStatements::free_text() { free_memory(text_); }
 
 // Drops the text before the present position.
 void ObjStatements::drop_text() {

@@ -10,8 +10,8 @@ namespace opal {
 // below the least of these.
 constexpr double paths_that_pay = 1 << 25;
 
-// Are the paths so few that the general kernel is done sooner, as it need not be compiled for the scene? The
-// answer depends on what is asked alone, never on a cache or a clock, so that a command always gives the same bits.
+// Are the paths so few that the general kernel is done sooner, as it need not be compiled for the scene? The answer
+// depends on device and request, never on a cache or a clock, so that a command always gives the same bits.
 // GPUs' compilers take longer for the general kernel than for a scene's own.
 // paths: pixels times samples; infinite where only an error is asked for.
 bool suits_general_kernel(const DeviceInfo &device, double paths);

@@ -1,5 +1,6 @@
 #include "scene/shapes.h"
 
+#include "base/large_vector.h"
 #include "shared/types.h"
 
 #include <fmt/format.h>
@@ -95,7 +96,7 @@ std::vector<TriangleMesh> TriangleMesh::parts(const std::vector<std::vector<size
         mesh.normals = of_normals.used();
         mesh.uvs = of_uvs.used();
         if (mesh.uvs.empty())
-            mesh.uv_corners = {};
+            free_memory(mesh.uv_corners);
     }
     return meshes;
 }

@@ -19,9 +19,8 @@ enum class SweepPart { points, images, all };
 // Measures what `record` lacks of the candidates, all on this device. Each candidate must have its StrategyRecord.
 // - points: the pilots, the reference, and the points. Replicates go in rounds, one of every strategy each, so that a
 //   disturbance of the machine affects all strategies.
-// - images: each candidate's image, all in one time: that of the fastest strategy for the most samples. Needs the
-// points
-//   of all devices.
+// - images: each candidate's image, all in one time: that of the fastest strategy for the most samples. The points of
+//   all devices must be there.
 // A strategy is compiled once, and freed after its image. Returns the number of renderers made. Throws Interrupted;
 // finished results are kept.
 size_t run_sweep(const SweepPlan &plan, const Device &device, const std::vector<Candidate> &candidates,

@@ -121,7 +121,7 @@ FRAME = """<scene>
 
 def grid(count):
     side = max(1, round(count**0.5))
-    return [(2 * (i % side) / side - 1, 2 * (i // side) / side - 1, 1 / side) for i in range(count)], side
+    return [(2 * (i % side) / side - 1, 2 * (i // side) / side - 1, 1 / side) for i in range(count)]
 
 
 def cubes(folder, count):
@@ -131,7 +131,7 @@ def cubes(folder, count):
         file.write(CUBE)
     with open(path, "w") as file:
         file.write(FRAME)
-        for k, (x, z, size) in enumerate(grid(count)[0]):
+        for k, (x, z, size) in enumerate(grid(count)):
             file.write(f'<mesh type="obj"><string name="filename" value="cube.obj"/><transform name="toWorld"><scale value="{size:g},{size:g},{size:g}"/>'
                        f'<translate value="{x:g},0,{z:g}"/></transform><bsdf type="diffuse"><color name="albedo" value="0.5 {0.2 + 0.6 * k / count:g} 0.3"/></bsdf></mesh>\n')
         file.write(lamp(-0.5, -0.5, 1, 10) + "</scene>\n")
@@ -148,7 +148,7 @@ def lamps(folder, count):
     path = os.path.join(folder, f"lamps_{count}.xml")
     with open(path, "w") as file:
         file.write(FRAME)
-        for k, (x, z, size) in enumerate(grid(count)[0]):
+        for k, (x, z, size) in enumerate(grid(count)):
             file.write(lamp(x, z, size / 2, 10**(4 * ((k * 0.6180339887) % 1) - 2)))
         file.write("</scene>\n")
     return path

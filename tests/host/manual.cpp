@@ -1,6 +1,7 @@
 // The manual: README.md is short, its links lead somewhere, its commands and flags exist; the tables of
 // scenes/README.md hold what Opal reads, and its first scene loads.
 #include "base/log.h"
+#include "base/values.h"
 #include "cameras/list.h"
 #include "commands/commands.h"
 #include "flatten/scene_warnings.h"
@@ -29,14 +30,6 @@ const fs::path top = OPAL_SOURCE_DIR;
 
 using Cells = std::vector<std::string>;
 using Names = std::vector<std::string>;
-
-std::vector<std::string> lines_of(const std::string &text) {
-    std::vector<std::string> lines;
-    std::istringstream stream(text);
-    for (std::string line; std::getline(stream, line);)
-        lines.push_back(line);
-    return lines;
-}
 
 bool contains(const Names &names, const std::string &name) {
     return std::find(names.begin(), names.end(), name) != names.end();
