@@ -154,7 +154,7 @@ int verify(const Options &o, SceneDescription scene, const std::filesystem::path
     watch_interrupts();
     std::vector<StrategyRender> renders = render_all(o, strategies, scenes, device, clock);
     for (StrategyRender &render : renders)
-        render.image.metadata["opal.dialect"] = name_of(scene.dialect);
+        render.image.metadata.insert({{"opal.dialect", name_of(scene.dialect)}, {"opal.scene_hash", scene.hash}});
     if (renders.size() < strategies.size()) {
         warn(fmt::format("interrupted after {} of {} strategies: no verdict", renders.size(), strategies.size()));
         return interrupt_exit_code();
@@ -167,6 +167,7 @@ int verify(const Options &o, SceneDescription scene, const std::filesystem::path
     const Agreement agreement = test_agreement(renders, o.significance);
     report = json_of(agreement, renders);
     report.update(object({{"scene", scene.file.string()},
+                          {"scene_hash", scene.hash},
                           {"dialect", name_of(scene.dialect)},
                           {"definitions", scene.definitions},
                           {"device", pick.info.name},
