@@ -204,12 +204,15 @@ SweepRecord resume(const std::filesystem::path &folder, const SweepRecord &fresh
 }
 
 bool is_whole_picture(const std::filesystem::path &file) {
-    try {
-        if (file.extension() == ".exr")
-            return read_exr(file).width > 0;
+    if (!std::filesystem::exists(file))
+        return false;
+    if (file.extension() == ".png") {
         const std::string bytes = read_file(file);
         return bytes.starts_with("\x89PNG") && bytes.ends_with("IEND\xae\x42\x60\x82");
-    } catch (const Error &) {
+    }
+    try {
+        return read_exr(file).width > 0;
+    } catch (const Error &) { // cut off, or no EXR
         return false;
     }
 }

@@ -55,7 +55,7 @@ struct ReferenceRecord {
     double mean_luminance = 0, stderr_luminance = 0;
     bool variance_known = false;
     double mean_square = 0; // over pixels and R, G, B, the scale of an MSE
-    std::string hash;       // FileHashes of reference.exr; empty for a given file
+    std::string hash{};     // FileHashes of reference.exr; empty for a given file
 };
 
 struct SweepRecord {
@@ -89,7 +89,7 @@ SweepRecord load_record(const std::filesystem::path &folder);
 // The record in the folder with the options of `fresh`, or `fresh` if there is none. Throws Error with the difference
 // if the folder holds another sweep.
 SweepRecord resume(const std::filesystem::path &folder, const SweepRecord &fresh);
-// Whether a PNG or EXR in the folder is there and readable.
+// Whether a PNG or EXR is there and has its end. Throws Error if it is there and cannot be read.
 bool is_whole_picture(const std::filesystem::path &file);
 // Writes sweep.json safely. A finished sweep adds its summary, which a later run does not read.
 void save(const SweepRecord &record, const std::filesystem::path &folder);

@@ -225,14 +225,7 @@ private:
         ReferenceRecord &r = record_.reference;
         if (plan_.reference) {
             read_reference();
-            r = {record_.reference_file,
-                 0,
-                 0,
-                 mean_luminance(reference_),
-                 0,
-                 reference_.find("variance.R") != nullptr,
-                 0,
-                 ""};
+            r = {record_.reference_file, 0, 0, mean_luminance(reference_), 0, reference_.find("variance.R") != nullptr};
         } else if (!r.made_by.empty() && read_reference()) {
             if (r.spp < 2 * record_.spp.back())
                 warn(fmt::format("the reference of the sweep that is continued has {} samples per pixel only", r.spp));

@@ -1,4 +1,5 @@
 #include "read/nori/load.h"
+#include "base/hash.h"
 #include "base/log.h"
 #include "base/table.h"
 #include "base/values.h"
@@ -195,6 +196,23 @@ TEST_CASE_METHOD(LoadFixture, "the filter without <rfilter> is the dialect's", "
     CHECK(upstream.kind == FILTER_gaussian);
     CHECK(upstream.radius == 2);
     CHECK(upstream.stddev == 0.5);
+}
+
+TEST_CASE_METHOD(LoadFixture, "a scene's hash is that of all files that were read", "[load]") {
+    const std::string obj = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl grey\nf 1 2 3\n", mtl = "newmtl grey\n";
+    scratch.write("a.obj", obj);
+    scratch.write("a.mtl", mtl);
+    const auto mesh = [&](bool materials) {
+        return "<mesh type='obj'><string name='filename' value='a.obj'/><boolean name='materials' value='" +
+               std::string(materials ? "true" : "false") + "'/></mesh>";
+    };
+    for (const bool materials : {false, true}) {
+        const SceneDescription scene = load(camera + mesh(materials));
+        std::string lines = xxh128(test::read_text(file())) + "\n" + xxh128(obj) + "\n";
+        if (materials)
+            lines += xxh128(mtl) + "\n";
+        CHECK(scene.hash == xxh128(lines));
+    }
 }
 
 TEST_CASE_METHOD(LoadFixture, "filters by type", "[load]") {
