@@ -22,7 +22,8 @@ TEST_CASE("A filter far wider than the image ends at once: it asks no pixel with
             fmt::format("<scene><camera type='perspective'><integer name='width' value='{}'/><integer name='height' "
                         "value='16'/><rfilter type='{}'><float name='radius' value='{}'/></rfilter></camera><mesh "
                         "type='parallelogram'><point name='origin' value='-3 -3 5'/><vector name='u' value='0 3 0'/>"
-                        "<vector name='v' value='5 0 0'/><emitter type='area'><color name='radiance' value='1 2 3'/></emitter></mesh></scene>",
+                        "<vector name='v' value='5 0 0'/><emitter type='area'><color name='radiance' value='1 2 "
+                        "3'/></emitter></mesh></scene>",
                         width, type, radius));
         const Outcome outcome = run_shell("cd " + folder.path().string() + " && timeout 60 " OPAL_BINARY " render " +
                                           scene + " --spp 4 --no-png -o out.exr");
