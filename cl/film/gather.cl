@@ -81,7 +81,8 @@ kernel void gather_around(global const Settings *settings, global const float *s
     uints of_film = band_first + at.pixel, x = of_film % width, y = of_film / width;
     // No more than the film's rows and columns are within reach of these pixels, which are in one row or more.
     uint first = band_first + at.first, last = band_first + min(at.first + (uint)LANES, at.pixels) - 1u;
-    int top = (int)(first / width), bottom = (int)(last / width), reach = (int)ceil(settings->filter_radius - 0.5f);
+    int top = (int)(first / width), bottom = (int)(last / width);
+    int reach = (int)min(ceil(settings->filter_radius - 0.5f), (float)max(width, height));
     int left = top == bottom ? (int)(first % width) : 0, right = top == bottom ? (int)(last % width) : (int)width - 1;
     int up = min(reach, bottom), down = min(reach, (int)height - 1 - top);
     int to_left = min(reach, right), to_right = min(reach, (int)width - 1 - left);

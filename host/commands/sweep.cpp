@@ -25,9 +25,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <iterator>
 #include <numeric>
 
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -190,6 +192,7 @@ int run_part_apart(SweepPart part, const SweepPlan &plan, const DevicePick &pick
     if (child < 0)
         throw Error("no process could be started for device " + pick.info.name);
     if (child == 0) {
+        prctl(PR_SET_PDEATHSIG, SIGTERM); // so that it ends with its parent
         int code = 1;
         try {
             code = run_part(part, plan, pick, candidates, record);
