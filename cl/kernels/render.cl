@@ -17,8 +17,8 @@
 #endif
 
 // Where paths may be endless, a launch ends after most_rounds rounds. Its work-items then lie in `unfinished`, and
-// *any_unfinished is set. A launch that goes on with them has `again`. One of 0 rounds sets *any_unfinished to the bytes
-// that an item takes there.
+// *any_unfinished is set. A launch that goes on with them has `again`. A launch of 0 rounds sets *any_unfinished to the
+// bytes of a work-item there.
 kernel void render(SCENE_PARAMETERS, global float *samples, uint first_item, uint items, uint tile_width,
                    uint tile_height, uint chunks, uint chunk_samples, uint pass_first, uint pass_samples,
                    global Unfinished *unfinished, global uint *any_unfinished, uint most_rounds, uint again) {
