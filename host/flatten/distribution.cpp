@@ -19,6 +19,7 @@ std::vector<double> relative_weights(std::span<const double> weights) {
     for (double weight : weights)
         largest = std::max(largest, weight); // never NaN
     std::vector<double> relative;
+    relative.reserve(weights.size());
     for (double weight : weights)
         relative.push_back(!(largest > 0)        ? 1.0
                            : std::isinf(largest) ? double(weight == largest)

@@ -35,7 +35,7 @@ template <class Real> Real weight_of(const Filter &filter, Real distance) {
 // All weights that a sample at `offset` from its pixel's centre has, together: in its pixel and in those around it.
 template <class Real> Real total_weight(const Filter &filter, Real offset) {
     constexpr double most = 64; // beyond, nothing new is seen
-    const int reach = int(std::ceil(std::min(filter.radius, most) - 0.5));
+    const int reach = int(std::ceil(std::clamp(filter.radius, 0.5, most) - 0.5));
     Real total = 0;
     for (int pixel = -reach; pixel <= reach; pixel++)
         total += weight_of(filter, offset + Real(pixel));
