@@ -1,3 +1,4 @@
+#include "base/memory.h"
 #include "flatten/camera.h"
 #include "flatten/distribution.h"
 #include "flatten/emitter_kinds.h"
@@ -6,6 +7,8 @@
 #include "flatten/features.h"
 #include "flatten/geometry.h"
 #include "flatten/store.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
@@ -131,6 +134,14 @@ void build_acceleration(TriangleSoup &soup, const std::optional<std::vector<Poin
 
 FlatScene flatten(const SceneDescription &description, int lanes, bool with_face_list,
                   const std::function<void(uint)> &on_gathered) {
+    double triangles = 0;
+    for (const Mesh &mesh : description.meshes)
+        if (const auto *shape = std::get_if<TriangleMesh>(&mesh.shape))
+            triangles += double(shape->triangles.size());
+    constexpr double tree_bytes_a_triangle = 60, tree_reserve_a_triangle = 170; // measured, beside the description
+    check_memory(tree_bytes_a_triangle * triangles, tree_reserve_a_triangle * triangles,
+                 fmt::format("the tree of {} triangles", triangles));
+
     FlatScene scene;
     const Extent extent = extent_of(description);
     const Flattening flattening = find_flattening(extent);
