@@ -122,8 +122,8 @@ void XmlNode::require_attributes(std::initializer_list<const char *> names, cons
 
 void XmlNode::fail(const std::string &message) const { throw XmlError(place(), message); }
 
-XmlDocument::XmlDocument(const std::filesystem::path &file)
-    : XmlDocument(file, read_text_file(file, FileKind::scene)) {}
+XmlDocument::XmlDocument(const std::filesystem::path &file, FileHashes *hashes)
+    : XmlDocument(file, read_text_file(file, FileKind::scene, hashes)) {}
 
 XmlDocument::XmlDocument(const std::filesystem::path &file, std::string text)
     : text_(std::move(text)), lines_(file.string(), without_mark(text_)) {

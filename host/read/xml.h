@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "scene/place.h"
 
 #include <pugixml.hpp>
@@ -82,7 +83,7 @@ private:
 class XmlDocument {
 public:
     // Reads and parses a file. Throws Error at the place of the first mistake.
-    explicit XmlDocument(const std::filesystem::path &file);
+    explicit XmlDocument(const std::filesystem::path &file, FileHashes *hashes = nullptr);
     // Parses `text`; errors name `file`.
     XmlDocument(const std::filesystem::path &file, std::string text);
     XmlDocument(const XmlDocument &) = delete;

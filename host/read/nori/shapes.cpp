@@ -36,10 +36,11 @@ std::vector<Mesh> parse_obj(Properties &properties, MeshStart start) {
     if (start.mesh.name.empty())
         start.mesh.name = name;
     const std::filesystem::path file = find_file(properties, name);
+    FileHashes *const hashes = properties.context().hashes;
     try {
-        ObjFile obj = read_obj(file, start.to_world);
+        ObjFile obj = read_obj(file, start.to_world, hashes);
         if (with_materials)
-            return meshes_by_material(std::move(obj), file, start.mesh, start.own);
+            return meshes_by_material(std::move(obj), file, start.mesh, start.own, hashes);
         if (!start.own.own_bsdf)
             warn_of_unused_materials(obj, file);
         start.mesh.shape = std::move(obj.mesh);
