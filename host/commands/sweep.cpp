@@ -5,6 +5,7 @@
 #include "base/hash.h"
 #include "base/json.h"
 #include "base/log.h"
+#include "base/printable.h"
 #include "base/read_file.h"
 #include "base/signals.h"
 #include "base/table.h"
@@ -74,7 +75,7 @@ Image read_reference(const std::string &file, const SceneDescription &scene) {
     if (const size_t invalid = invalid_pixels(image).count)
         throw Error(fmt::format("--reference {}: {} of its pixels are NaN or infinite", file, invalid));
     const std::string of = image.text("opal.scene");
-    if (!of.empty() && std::filesystem::path(of).filename() != scene.file.filename())
+    if (!of.empty() && std::filesystem::path(of).filename() != as_utf8(scene.file.filename().string()))
         throw Error(fmt::format("--reference {}: is an image of {}, not of {}", file, of, scene.file.string()));
     return image;
 }

@@ -162,14 +162,12 @@ public:
                 return openat(folder, name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
             }));
             error_ = *descriptor_ < 0 ? errno : 0;
+            there_ = error_ == 0;
             if (error_ != EEXIST)
                 return;
         }
     }
-    ~TemporaryFile() {
-        if (error_ == 0 && !renamed_)
-            unlinkat(folder_, name_.c_str(), 0);
-    }
+    ~TemporaryFile() { remove(); }
     TemporaryFile(const TemporaryFile &) = delete;
     TemporaryFile &operator=(const TemporaryFile &) = delete;
 
@@ -177,8 +175,16 @@ public:
     int descriptor() const { return *descriptor_; }
     int write(std::string_view bytes) { return write_and_close(std::move(*descriptor_), bytes); }
     int rename_to(const std::string &name) {
-        renamed_ = again([&] { return renameat(folder_, name_.c_str(), folder_, name.c_str()); }) == 0;
-        return renamed_ ? 0 : errno;
+        there_ = again([&] { return renameat(folder_, name_.c_str(), folder_, name.c_str()); }) != 0;
+        return there_ ? errno : 0;
+    }
+
+    // Removes it unless it was renamed. Returns errno, or 0.
+    int remove() {
+        if (!there_)
+            return 0;
+        there_ = unlinkat(folder_, name_.c_str(), 0) != 0 && unlinkat(folder_, name_.c_str(), 0) != 0; // once more
+        return there_ ? errno : 0;
     }
 
 private:
@@ -187,14 +193,17 @@ private:
     std::optional<RemovedBySignal> signal_;
     std::optional<Descriptor> descriptor_;
     int error_ = 0;
-    bool renamed_ = false;
+    bool there_ = false; // under its temporary name
 };
 
 // Gives a file the owner and the mode of the one that it replaces; the owner as far as the system allows it.
-void take_over(int descriptor, const struct stat &old) {
+// Returns errno, or 0.
+int take_over(int descriptor, const struct stat &old) {
     if (fchown(descriptor, old.st_uid, old.st_gid) != 0 && fchown(descriptor, uid_t(-1), old.st_gid) != 0) {
     }
-    fchmod(descriptor, old.st_mode & 0777);
+    return again([&] { return fchmod(descriptor, old.st_mode & 0777); }) != 0 && errno != EPERM && errno != ENOTSUP
+               ? errno
+               : 0; // some file systems have no modes
 }
 
 // Returns errno, or 0. old: the file that is replaced; nullptr: there is none.
@@ -205,9 +214,9 @@ int replace(const fs::path &target, const struct stat *old, std::string_view byt
     TemporaryFile temporary(folder, old ? old->st_mode & 0666 : 0666);
     if (temporary.error())
         return temporary.error();
-    if (old)
-        take_over(temporary.descriptor(), *old);
-    const int error = temporary.write(bytes);
+    int error = old ? take_over(temporary.descriptor(), *old) : 0;
+    if (error == 0)
+        error = temporary.write(bytes);
     return error ? error : temporary.rename_to(target.filename().string());
 }
 
@@ -304,8 +313,11 @@ void check_writable(const fs::path &file) {
     const Descriptor folder = open_folder_of(target);
     if (folder < 0)
         cannot_write(file, errno);
-    if (const TemporaryFile trial(folder, 0666); trial.error())
+    TemporaryFile trial(folder, 0666);
+    if (trial.error())
         cannot_write(file, trial.error());
+    if (const int error = trial.remove()) // nor could it be renamed
+        cannot_write(file, error);
     remove_leftovers(target);
 }
 
