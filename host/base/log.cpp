@@ -74,8 +74,12 @@ void note(const std::string &line) {
 }
 
 void warn(const std::string &line) {
-    kept_warnings.push_back(shortened_message(line));
-    say("warning: ", sentence(line));
+    constexpr size_t most_warnings = 1000; // a file may ask for a million; each stands in the reports, too
+    if (kept_warnings.size() > most_warnings)
+        return;
+    kept_warnings.push_back(kept_warnings.size() < most_warnings ? shortened_message(line)
+                                                                 : "more warnings follow, which are not told");
+    say("warning: ", sentence(kept_warnings.back()));
 }
 
 const std::vector<std::string> &warnings() { return kept_warnings; }
