@@ -18,8 +18,8 @@ struct JsonMember {
 // a key, and makes an array of pairs where it cannot tell.
 nlohmann::json object(std::initializer_list<JsonMember> members);
 
-// Text of a JSON value. Names of files and drivers need not be UTF-8, but JSON must be: bytes that are not become
-// U+FFFD, as in browsers and editors. indent -1: one line.
+// Text of a JSON value. Names of files and drivers need not be UTF-8, but JSON must be: bytes that are not become text,
+// \xe4 (as_utf8). It holds no character that steers a terminal (printable_json). indent -1: one line.
 std::string dump(const nlohmann::json &json, int indent = -1);
 
 // The value of a text. Throws nlohmann::json::exception where it is no JSON.

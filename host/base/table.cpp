@@ -1,5 +1,7 @@
 #include "base/table.h"
 
+#include "base/printable.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -93,7 +95,7 @@ std::string unknown_name(std::string_view what, std::string_view name, const std
                          const std::string &of) {
     std::string nearest = nearest_name(name, known);
     std::string hint = nearest.empty() ? "" : fmt::format("did you mean '{}'? ", nearest);
-    return fmt::format("unknown {} '{}'{}; {}available: {}", what, name, of, hint, joined(known));
+    return fmt::format("unknown {} {}{}; {}available: {}", what, quoted(name), of, hint, joined(known));
 }
 
 } // namespace opal

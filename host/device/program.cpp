@@ -1,6 +1,8 @@
 #include "device/program.h"
 
+#include "base/error.h"
 #include "base/log.h"
+#include "base/values.h"
 
 #include <fmt/format.h>
 
@@ -48,9 +50,11 @@ cl::Program build_program(const Device &device, const std::string &text, const B
     try {
         program.build({device.handles->device}, build_flags(options).c_str());
     } catch (const cl::Error &error) {
-        throw Error(fmt::format("{} (driver {}): the kernels do not build: {}; flags {}\n{}", device.info.name,
-                                device.info.driver, cl_error_name(error.err()), build_flags(options),
-                                log_of(program, device.handles->device)));
+        std::vector<std::string> lines = lines_of(log_of(program, device.handles->device));
+        lines.insert(lines.begin(),
+                     fmt::format("{} (driver {}): the kernels do not build: {}; flags {}", device.info.name,
+                                 device.info.driver, cl_error_name(error.err()), build_flags(options)));
+        throw ErrorList(lines);
     }
     const double taken = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     detail(fmt::format("build   {} for {} in {:.3g} s; flags {}; the driver says:\n{}",

@@ -359,6 +359,14 @@ nlohmann::json json_of(const Crop &crop) {
                    {"of_height", crop.of_height}});
 }
 
+void check_exr_size(int width, size_t layers) {
+    // A chunk, here a line, tells its size in bytes as an int.
+    const size_t most = size_t(std::numeric_limits<int>::max()) / (sizeof(float) * layers);
+    if (size_t(width) > most)
+        throw Error(fmt::format("an EXR of {} layers holds at most {} pixels a line, and the image has {}", layers,
+                                most, width));
+}
+
 std::string exr_bytes(const Image &image) {
     const Imf::Header header = header_of(image);
     header.sanityCheck();
