@@ -86,7 +86,7 @@ Command cache_command() {
                          .help = "With --warm: the kernel's arithmetic",
                          .check = OneOf<std::string>{names_of(math_modes())}},
                         json_row(o->json, "the cache's folder and size")},
-            .examples = {"opal cache", "opal cache --clear", "opal cache --warm"},
+            .examples = {"opal cache --clear", "opal cache --warm"},
             .run = [o] { return run(*o); }};
 }
 

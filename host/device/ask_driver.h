@@ -8,9 +8,9 @@
 namespace opal {
 
 struct Driver {
-    std::string name;    // its .icd file or, without one, its library; empty: whatever the loader finds
-    std::string library; // as dlopen takes it; empty where the .icd file names none
-    std::string problem; // why it names none
+    std::string name;      // its .icd file or, without one, its library; empty: whatever the loader finds
+    std::string library;   // as dlopen takes it; empty where the .icd file names none
+    std::string problem{}; // why it names none
 };
 
 // The drivers that OpenCL loaders would load, in this order: the libraries in $OCL_ICD_FILENAMES (Khronos's loader);

@@ -182,15 +182,15 @@ void trim_cache(const fs::path &folder, unsigned long long most_bytes) {
         fs::path path;
         unsigned long long bytes;
     };
-    constexpr time_t longest_write = 600; // seconds
+    const time_t hour_ago = time(nullptr) - 3600;
     std::vector<File> files;
     unsigned long long bytes = 0;
     visit_files(folder, [&](const fs::path &file, const struct stat &status) {
         if (file.extension() == file_extension) {
             files.push_back({status.st_mtim, file, (unsigned long long)status.st_size});
             bytes += files.back().bytes;
-        } else if (file.filename().string().starts_with(temporary_prefix) &&
-                   status.st_mtim.tv_sec < time(nullptr) - longest_write)
+        } else if (status.st_mtim.tv_sec < hour_ago &&
+                   (file.extension() == silent_extension || file.filename().string().starts_with(temporary_prefix)))
             unlink(file.c_str());
     });
     std::ranges::sort(files, [](const File &a, const File &b) {
