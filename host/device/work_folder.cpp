@@ -6,12 +6,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <fstream>
+#include <vector>
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -77,18 +79,20 @@ WorkFolder &WorkFolder::own() {
 
 WorkFolder::WorkFolder() : owner_(getpid()) {
     const CacheFolder &cache = cache_folder();
-    std::error_code ignored;
-    const fs::path temporary = fs::absolute(fs::temp_directory_path(ignored), ignored);
     if (!cache.problem.empty())
         note(fmt::format("compiled kernels are not kept for the next run: {}", cache.problem));
-    if (cache.problem.empty() && has_room(cache.path) && make_in(cache.path))
-        return;
-    if (!temporary.empty() && has_room(temporary) && make_in(temporary))
-        return;
-    if ((!cache.path.empty() && make_in(cache.path)) || make_in(temporary))
-        return;
-    throw Error(fmt::format("drivers need a folder for compiled kernels, and none can be made in {}: {}",
-                            temporary.empty() ? "/tmp" : temporary.string(), std::strerror(errno)));
+    std::error_code ignored;
+    // In memory first: to make and remove files on a disk takes milliseconds.
+    std::vector<std::string> parents = {"/dev/shm", fs::absolute(fs::temp_directory_path(ignored), ignored)};
+    if (cache.problem.empty()) {
+        parents.insert(parents.begin() + 1, cache.path);
+        remove_dead(cache.path);
+    }
+    const bool made = std::ranges::any_of(parents, [&](const fs::path &p) { return has_room(p) && make_in(p); }) ||
+                      std::ranges::any_of(parents, [&](const fs::path &p) { return make_in(p); });
+    if (!made)
+        throw Error(fmt::format("drivers need a folder for compiled kernels, and none can be made in {}: {}",
+                                fmt::join(parents, ", "), std::strerror(errno)));
 }
 
 bool WorkFolder::make_in(const fs::path &parent) {

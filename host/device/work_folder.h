@@ -6,8 +6,8 @@
 
 namespace opal {
 
-// Mode 700, in the cache folder, or, where nothing can be written there, in the folder for temporary files. It is
-// removed when the process ends; the next process removes those of killed ones.
+// Mode 700, in memory (/dev/shm), or, where that is small or runs no programs, in the cache folder or that for
+// temporary files. It is removed when the process ends; the next process removes those of killed ones.
 class WorkFolder {
 public:
     static WorkFolder &own(); // of this process, made at the first call; Error if none can be made

@@ -123,7 +123,7 @@ TEST_CASE("Drivers compile in an empty folder of mode 700, whatever PATH says", 
     std::vector<std::string> words{std::istream_iterator<std::string>(lines), {}};
     REQUIRE(words.size() == 6); // two kernels are linked
     for (size_t i = 0; i < words.size(); i += 3) {
-        CHECK_THAT(words[i], Catch::StartsWith((place.cache / "opal-run-").string()) && Catch::EndsWith("/empty"));
+        CHECK_THAT(words[i], Catch::Contains("/opal-run-") && Catch::EndsWith("/empty"));
         CHECK(words[i + 1] == "700");
         CHECK(words[i + 2] == "700");
     }
