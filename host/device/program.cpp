@@ -50,10 +50,11 @@ bool has_program(const std::string &name) {
     return false;
 }
 
-bool is_pocl(const Device &device) { return device.info.platform == "Portable Computing Language"; }
-
-// PoCL 3.1 ends the process where it cannot link a kernel.
-bool lacks_linker(const Device &device) { return is_pocl(device) && !has_program("ld") && !has_program("ld.lld"); }
+// PoCL 3.1 ends the process where it cannot link a kernel for a CPU.
+bool lacks_linker(const Device &device) {
+    return device.info.platform == "Portable Computing Language" && device.info.type == "cpu" && !has_program("ld") &&
+           !has_program("ld.lld");
+}
 
 std::string linker_text() { return "PoCL needs the program ld, and $PATH has none (Debian: apt-get install binutils)"; }
 
@@ -129,34 +130,32 @@ cl::Program build_program(const Device &device, const std::string &text, const B
     return program;
 }
 
-LaunchScope::LaunchScope(const Device &device, const cl::Kernel &kernel)
-    : device_(device), exceptions_(std::uncaught_exceptions()) {
+LaunchScope::LaunchScope(const Device &device, const cl::Kernel &kernel) : exceptions_(std::uncaught_exceptions()) {
     const cl_program program = kernel.getInfo<CL_KERNEL_PROGRAM>()();
     for (const BuiltProgram &built : device.handles->programs)
-        if (built.program() == program && built.file && built.file->was_cached() &&
-            built.file->is_first_launch(kernel.getInfo<CL_KERNEL_FUNCTION_NAME>()))
-            first_ = built.file;
+        if (built.program() == program)
+            file_ = built.file;
+    first_ = file_ && file_->was_cached() && file_->is_first_launch(kernel.getInfo<CL_KERNEL_FUNCTION_NAME>());
     if (first_)
-        WorkFolder::own().mark(first_->name());
+        WorkFolder::own().mark(file_->name());
 }
 
 LaunchScope::~LaunchScope() {
     const bool failed = std::uncaught_exceptions() > exceptions_;
-    if (first_) {
+    if (first_)
         WorkFolder::own().unmark();
-        if (failed)
-            first_->remove();
-    }
-    // PoCL makes files in its folder when it compiles. It takes longer to compile than clocks of file systems count by.
+    if (first_ && failed)
+        file_->remove();
+    if (!file_ || failed)
+        return;
+    // PoCL makes files in its folder when it compiles, which takes longer than the clocks of file systems count by.
     static timespec stored{};
     const timespec now = changed(WorkFolder::own().driver_files());
-    if (failed || (now.tv_sec == stored.tv_sec && now.tv_nsec == stored.tv_nsec))
+    if (now.tv_sec == stored.tv_sec && now.tv_nsec == stored.tv_nsec)
         return;
     stored = now;
     try {
-        for (const BuiltProgram &built : device_.handles->programs)
-            if (built.file)
-                built.file->store();
+        file_->store();
     } catch (const std::exception &error) {
         warn(fmt::format("compiled kernels are not kept for the next run: {}", error.what()));
     }

@@ -24,9 +24,9 @@ public:
 
 private:
     const DriverScope driver_;
-    const Device &device_;
-    std::shared_ptr<CachedProgram> first_; // whose kernel, from the cache, is launched for the first time; else null
-    int exceptions_;                       // in flight at the start
+    std::shared_ptr<CachedProgram> file_; // of the kernel's program; null: it is not kept
+    bool first_ = false;                  // it comes from the cache, and is launched for the first time
+    int exceptions_;                      // in flight at the start
 };
 
 } // namespace opal
