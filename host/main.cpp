@@ -4,6 +4,7 @@
 #include "base/exit_code.h"
 #include "base/large_vector.h"
 #include "base/log.h"
+#include "base/process.h"
 #include "base/signals.h"
 #include "commands/commands.h"
 #include "commands/help.h"
@@ -63,6 +64,7 @@ int exit_code_after_output(int code) {
 int main(int argc, char **argv) {
     opal::return_large_blocks();
     opal::prepare_streams();
+    opal::clean_search_paths(argv);
     opal::set_command_line(argc, argv);
     int code = opal::exit_failed;
     try {

@@ -230,6 +230,7 @@ void Renderer::restart(unsigned seed, unsigned first_sample) {
 
 // Launches `items` work-items, rounded up to whole work-groups, waits for them and returns the kernel's seconds.
 double Renderer::launch(const cl::Kernel &kernel, unsigned items) {
+    const LaunchScope scope(device_, kernel);
     cl::Event event;
     const unsigned padded = ceil_div(items, shape_.local_size) * shape_.local_size;
     device_.handles->queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(padded),
