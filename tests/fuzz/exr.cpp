@@ -74,8 +74,11 @@ std::string others_file(Random &random) {
     MemoryOutput stream;
     {
         Imf::MultiPartOutputFile file(stream, headers.data(), int(parts));
-        for (int part = 0; part < int(parts); part++)
-            Imf::OutputPart(file, part).writePixels(data.max.y - data.min.y + 1); // no frame buffer: zeros
+        for (int i = 0; i < int(parts); i++) {
+            Imf::OutputPart part(file, i);
+            part.setFrameBuffer({}); // of channels that are not there, zeros are written
+            part.writePixels(data.max.y - data.min.y + 1);
+        }
     }
     return stream.bytes();
 }

@@ -73,11 +73,12 @@ void require(bool holds, const char *text) {
 
 } // namespace opal::fuzz
 
-extern "C" const char *__asan_default_options() { return "allocator_may_return_null=1:quarantine_size_mb=16"; }
+extern "C" const char *__asan_default_options() { return "allocator_may_return_null=1:quarantine_size_mb=16:malloc_context_size=1"; }
 
 extern "C" int LLVMFuzzerInitialize(int *, char ***) {
     opal::set_quiet(true);
-    stdout = stderr = opal::fuzz::forgetful_stream(); // libFuzzer and the sanitizers keep the true stderr
+    stderr = opal::fuzz::forgetful_stream(); // libFuzzer and the sanitizers keep the true one
+    opal::fuzz::require(std::freopen("/dev/null", "w", stdout) != nullptr, "/dev/null takes stdout");
     __sanitizer_install_malloc_and_free_hooks(opal::fuzz::count_malloc, opal::fuzz::count_free);
     return 0;
 }
