@@ -15,12 +15,13 @@
 namespace opal {
 namespace {
 
-// The crop, and around it the pixels within reach of the filter, as far as the image goes.
+// The crop, and around it the pixels within reach of the filter, as far as the image goes. Doubles hold sums of the
+// largest sizes and radii, which integers do not.
 PixelWindow film_window(const Crop &crop, const Settings &settings) {
-    const int reach = std::max(0, int(std::ceil(settings.filter_radius - 0.5f)));
-    const int left = std::max(0, crop.x - reach), top = std::max(0, crop.y - reach);
-    const int right = std::min(crop.of_width, crop.x + crop.width + reach),
-              bottom = std::min(crop.of_height, crop.y + crop.height + reach);
+    const double reach = std::max(0.0, std::ceil(settings.filter_radius - 0.5));
+    const double left = std::max(0.0, crop.x - reach), top = std::max(0.0, crop.y - reach);
+    const double right = std::min(double(crop.of_width), crop.x + double(crop.width) + reach),
+                 bottom = std::min(double(crop.of_height), crop.y + double(crop.height) + reach);
     return {uint(left), uint(top), uint(right - left), uint(bottom - top)};
 }
 
