@@ -54,8 +54,13 @@ std::string opals_file(Random &random) {
 // One of other programs: windows apart, parts, half or whole numbers, and names of channels of several layers.
 std::string others_file(Random &random) {
     static const std::vector<std::vector<std::string>> channel_names = {
-        {"R", "G", "B"}, {"r", "g", "b"}, {"Y"}, {"ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"},
-        {"A", "B", "G", "R", "Z"}, {"RY", "BY", "Y"}, {"X"}};
+        {"R", "G", "B"},
+        {"r", "g", "b"},
+        {"Y"},
+        {"ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"},
+        {"A", "B", "G", "R", "Z"},
+        {"RY", "BY", "Y"},
+        {"X"}};
     static const std::vector<std::string> part_names = {"rgb", "beauty", "Combined", "other", "depth"};
     const int width = 1 + int(below(5, random)), height = 1 + int(below(5, random));
     const Imath::Box2i data({int(below(3, random)), int(below(3, random))}, {width + 2, height + 2});

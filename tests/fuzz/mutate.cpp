@@ -10,14 +10,54 @@ namespace opal::fuzz {
 namespace {
 
 // Ends of ranges, what rounds to them, and what only looks like a number.
-const std::vector<std::string> numbers = {
-    "0",         "-0",        "1",          "-1",          "2",          "0.5",    "1e-7",
-    "1e38",      "-1e38",     "3.4028235e38", "3.5e38",    "1e39",       "1e308",  "1e309",
-    "1e-38",     "1e-45",     "1e-46",      "5e-324",      "1e-400",     "1e-30",  "1e30",
-    "16777216",  "16777217",  "2147483647", "-2147483648", "2147483648", "65536",  "4294967295",
-    "4294967296", "18446744073709551616", "99999999999999999999", "nan", "-nan",   "inf",
-    "-inf",      "1.#INF",    "0x10",       "1_0",         "+1",         "+-1",    "1.",
-    ".5",        "1,5",       "1e",         "180",         "179.9999",   "-1e-45", ""};
+const std::vector<std::string> numbers = {"0",
+                                          "-0",
+                                          "1",
+                                          "-1",
+                                          "2",
+                                          "0.5",
+                                          "1e-7",
+                                          "1e38",
+                                          "-1e38",
+                                          "3.4028235e38",
+                                          "3.5e38",
+                                          "1e39",
+                                          "1e308",
+                                          "1e309",
+                                          "1e-38",
+                                          "1e-45",
+                                          "1e-46",
+                                          "5e-324",
+                                          "1e-400",
+                                          "1e-30",
+                                          "1e30",
+                                          "16777216",
+                                          "16777217",
+                                          "2147483647",
+                                          "-2147483648",
+                                          "2147483648",
+                                          "65536",
+                                          "4294967295",
+                                          "4294967296",
+                                          "18446744073709551616",
+                                          "99999999999999999999",
+                                          "nan",
+                                          "-nan",
+                                          "inf",
+                                          "-inf",
+                                          "1.#INF",
+                                          "0x10",
+                                          "1_0",
+                                          "+1",
+                                          "+-1",
+                                          "1.",
+                                          ".5",
+                                          "1,5",
+                                          "1e",
+                                          "180",
+                                          "179.9999",
+                                          "-1e-45",
+                                          ""};
 
 // A piece of the text that begins at `start`, up to one of the next few starts.
 std::string_view piece_at(std::string_view text, const std::vector<size_t> &starts, size_t at, Random &random) {
@@ -25,7 +65,7 @@ std::string_view piece_at(std::string_view text, const std::vector<size_t> &star
     return text.substr(starts[at], end < starts.size() ? starts[end] - starts[at] : std::string_view::npos);
 }
 
-void mutate_pieces(char begin, std::string &text, Random &random) {
+void mutate_pieces(char begin, std::string &text, size_t max_size, Random &random) {
     std::vector<size_t> starts;
     for (size_t at = text.find(begin); at != text.npos; at = text.find(begin, at + 1))
         starts.push_back(at);
@@ -38,10 +78,13 @@ void mutate_pieces(char begin, std::string &text, Random &random) {
         text.erase(starts[from], piece.size());
     } else if (kind == 1) { // put in another's place
         text.replace(starts[to], piece_at(text, starts, to, random).size(), piece);
-    } else { // doubled, or many times
-        const size_t times = kind == 2 ? 1 : 1 + below(30, random);
+    } else { // doubled, or many times: as often as there is room for shows what takes more than linear time
+        const size_t room = (std::max(max_size, text.size()) - text.size()) / piece.size();
+        const size_t times = kind == 2 ? 1 : std::min(room, below(8, random) == 0 ? room : 1 + below(30, random));
+        std::string pieces;
         for (size_t i = 0; i < times; i++)
-            text.insert(starts[to], piece);
+            pieces += piece;
+        text.insert(starts[to], pieces);
     }
 }
 
@@ -94,7 +137,7 @@ size_t mutate(const TextFormat &format, std::uint8_t *data, size_t size, size_t 
     else
         for (size_t times = 1 + below(3, random); times > 0; times--)
             if (below(3, random) == 0)
-                mutate_pieces(format.piece, text, random);
+                mutate_pieces(format.piece, text, max_size, random);
             else
                 mutate_word(format, text, random);
     size = std::min(text.size(), max_size);

@@ -40,12 +40,12 @@ void read(const ServedFile &file, unsigned char use, bool has_library) {
     check_meshes(meshes_by_material(std::move(obj), file.path(), mesh, own), use & 2 ? 16 : 1);
 }
 
-const TextFormat format = {
-    .words = [](std::string_view text) { return separated(text, " \t\r\n/"); },
-    .replacements = {"v",    "vn",   "vt",    "f",     "usemtl", "mtllib", "newmtl", "Kd",     "Ke",      "Ks",
-                     "Ns",   "Ni",   "illum", "d",     "Tr",     "Pr",     "Pm",     "map_Kd", "a",       "1/1/1",
-                     "1//1", "-1",   "1/2",   "-1/-1", "1 1 1",  "#",      "\\\n",   "\r\n",   "#mtl\n",  "xyz",
-                     "-s",   "-o",   "-bm",   "a.png", "l",      "p",      "s",      "o",      "spectral", "\t"}};
+const TextFormat format = {.words = [](std::string_view text) { return separated(text, " \t\r\n/"); },
+                           .replacements = {"v",     "vn",     "vt",   "f",     "usemtl", "mtllib", "newmtl",   "Kd",
+                                            "Ke",    "Ks",     "Ns",   "Ni",    "illum",  "d",      "Tr",       "Pr",
+                                            "Pm",    "map_Kd", "a",    "1/1/1", "1//1",   "-1",     "1/2",      "-1/-1",
+                                            "1 1 1", "#",      "\\\n", "\r\n",  "#mtl\n", "xyz",    "-s",       "-o",
+                                            "-bm",   "a.png",  "l",    "p",     "s",      "o",      "spectral", "\t"}};
 
 } // namespace
 

@@ -57,7 +57,8 @@ void check_tree(const FlatScene &scene, std::vector<bool> &met) {
             if (child & OPAL_LEAF) {
                 const uint block = child & OPAL_BLOCK_BITS;
                 require(shape_of(child & ~OPAL_LEAF) == SHAPE_triangle, "leaves hold triangles");
-                require(block < scene.settings.face_list_slot / OPAL_WIDTH || scene.faces.empty(), "listed, not in a leaf");
+                require(block < scene.settings.face_list_slot / OPAL_WIDTH || scene.faces.empty(),
+                        "listed, not in a leaf");
                 require(block < leaf_met.size() && !leaf_met[block], "each leaf is met once");
                 leaf_met[block] = true;
                 mark(scene.triangle_blocks[block], met);
@@ -124,7 +125,6 @@ void check_emitters(const FlatScene &scene) {
     for (const EmitterRecord &emitter : scene.emitters) {
         require(emitter.kind < EMITTER_COUNT && emitter.other < scene.emitters.size(), "a row's other emitter is one");
         require(is_share(emitter.probability) && is_share(emitter.accept), "probabilities are from 0 to 1");
-        require(all_finite(emitter.u.color), "colours of emitters are finite");
         sum += emitter.probability;
         if (emitter.kind != EMITTER_mesh)
             continue;
@@ -158,6 +158,10 @@ void check(const TriangleMesh &mesh) {
     for (const auto &triangle : mesh.uv_corners)
         for (const unsigned uv : triangle)
             require(uv == OPAL_NONE || uv < mesh.uvs.size(), "a corner's uv is one");
+}
+
+bool has_finite_lights(const FlatScene &scene) {
+    return std::ranges::all_of(scene.emitters, [](const EmitterRecord &e) { return all_finite(e.u.color); });
 }
 
 void check(const FlatScene &scene) {

@@ -13,4 +13,7 @@ void check(const TriangleMesh &mesh);
 // to one. All coordinates are finite.
 void check(const FlatScene &scene);
 
+// A light whose radiance or intensity is not finite must be warned of.
+bool has_finite_lights(const FlatScene &scene);
+
 } // namespace opal::fuzz

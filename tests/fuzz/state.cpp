@@ -1,13 +1,13 @@
 // State files: sweep.json, as a later run continues and shows it; and what a driver's probe prints about devices.
 #include "base/error.h"
 #include "base/json.h"
+#include "base/read_file.h"
 #include "device/info_json.h"
 #include "fuzz/harness.h"
 #include "fuzz/mutate.h"
 #include "plot/svg.h"
 #include "sweep/convergence_plot.h"
 #include "sweep/page.h"
-#include "base/read_file.h"
 
 namespace opal::fuzz {
 
@@ -29,8 +29,9 @@ SweepRecord small_record() {
     for (const char *name : {"mis", "emitters"}) {
         StrategyRecord &strategy = record.strategy(name, "a label");
         for (const unsigned spp : record.spp)
-            strategy.points.push_back({spp, {{0, 0.25 * spp, 0.1 / spp, 0.2 / spp, 0.3, 0},
-                                             {1, 0.26 * spp, 0.11 / spp, 0.21 / spp, 0.31, 1}}});
+            strategy.points.push_back(
+                {spp,
+                 {{0, 0.25 * spp, 0.1 / spp, 0.2 / spp, 0.3, 0}, {1, 0.26 * spp, 0.11 / spp, 0.21 / spp, 0.31, 1}}});
         strategy.shot = {16, 0.5, 0.01, "equal_time_1"};
     }
     return record;
@@ -50,11 +51,12 @@ const TextFormat format = {
     .words = [](std::string_view text) { return separated(text, " \t\r\n,:[]{}"); },
     .replacements = {"null", "true", "[]", "{}", "\"\"", "\"a\"", "\"\\u0000\"", "\"\xff\"", "[[]]", "1.5", "-1"},
     .piece = '\n',
-    .start = [](Random &random) {
-        static const std::string record = record_text();
-        static const std::string device = dump(nlohmann::json(DeviceInfo{}));
-        return below(4, random) == 0 ? device : record;
-    }};
+    .start =
+        [](Random &random) {
+            static const std::string record = record_text();
+            static const std::string device = dump(nlohmann::json(DeviceInfo{}));
+            return below(4, random) == 0 ? device : record;
+        }};
 
 void show(const SweepRecord &record, const std::filesystem::path &folder) {
     const SweepSummary summary = summarise(record);

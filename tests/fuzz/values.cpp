@@ -1,11 +1,11 @@
 // The small parsers: numbers, durations, crops, values of options, definitions, names and kinds of files. The first
 // byte of an input picks one.
+#include "base/values.h"
 #include "base/command_line.h"
 #include "base/error.h"
 #include "base/json.h"
 #include "base/table.h"
 #include "base/units.h"
-#include "base/values.h"
 #include "commands/vary.h"
 #include "fuzz/harness.h"
 #include "fuzz/mutate.h"
@@ -26,7 +26,9 @@ void number(const std::string &text) {
     require(std::abs(parse_number(text)) <= std::numeric_limits<float>::max(), "numbers are finite floats");
 }
 
-void numbers(const std::string &text) { require(parse_numbers(text, split(text).size()).size() == split(text).size(), "as many numbers as words"); }
+void numbers(const std::string &text) {
+    require(parse_numbers(text, split(text).size()).size() == split(text).size(), "as many numbers as words");
+}
 
 void triple(const std::string &text) {
     const Vec3 v = parse_triple(text);
@@ -112,9 +114,23 @@ constexpr Parser parsers[] = {number, numbers, triple,      whole, boolean,     
                               crop,   option,  definitions, vary,  kind_of_file, names,   json};
 
 std::vector<std::string> option_words() {
-    std::vector<std::string> words = {"60s", "500ms", "2min", "1h", "1%", "50 %", "0,0,8,8", "8,8,1272,712",
-                                      "a=1,2", "w=0.1,0.5", "<scene><a b=\"$a\"/></scene>\na=1", "true", "\xef\xbb\xbf",
-                                      "<default name=\"a\" value=\"1\"/>", "newmtl a", "v 1 2 3", "<scene"};
+    std::vector<std::string> words = {"60s",
+                                      "500ms",
+                                      "2min",
+                                      "1h",
+                                      "1%",
+                                      "50 %",
+                                      "0,0,8,8",
+                                      "8,8,1272,712",
+                                      "a=1,2",
+                                      "w=0.1,0.5",
+                                      "<scene><a b=\"$a\"/></scene>\na=1",
+                                      "true",
+                                      "\xef\xbb\xbf",
+                                      "<default name=\"a\" value=\"1\"/>",
+                                      "newmtl a",
+                                      "v 1 2 3",
+                                      "<scene"};
     for (const StrategyOption &option : strategy_options()) {
         words.push_back(option.name + "=");
         words.insert(words.end(), option.names.begin(), option.names.end());
@@ -123,12 +139,12 @@ std::vector<std::string> option_words() {
 }
 
 const TextFormat &format() {
-    static const TextFormat lines = {.words = [](std::string_view text) { return separated(text, ",= \n"); },
-                                     .replacements = option_words(),
-                                     .piece = ',',
-                                     .start = [](Random &random) {
-                                         return char(below(std::size(parsers), random)) + one_of(option_words(), random);
-                                     }};
+    static const TextFormat lines = {
+        .words = [](std::string_view text) { return separated(text, ",= \n"); },
+        .replacements = option_words(),
+        .piece = ',',
+        .start =
+            [](Random &random) { return char(below(std::size(parsers), random)) + one_of(option_words(), random); }};
     return lines;
 }
 
