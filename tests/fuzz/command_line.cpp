@@ -44,6 +44,16 @@ const Vocabulary &vocabulary() {
     return all;
 }
 
+// So that the next input may give the same names; other options are set anew.
+void forget_definitions(const std::vector<Command> &commands) {
+    for (const Command &command : commands) {
+        for (const OptionRow &row : command.options)
+            if (const auto *map = std::get_if<std::map<std::string, std::string> *>(&row.target))
+                (*map)->clear();
+        forget_definitions(command.subcommands);
+    }
+}
+
 const TextFormat &format() {
     static const TextFormat lines = {.words = [](std::string_view text) { return separated(text, "\n="); },
                                      .replacements = vocabulary().words,
@@ -66,6 +76,7 @@ void try_input(std::string_view input) {
         parse(commands, words);
     } catch (const UsageError &) {
     }
+    forget_definitions(commands);
 }
 
 } // namespace opal::fuzz

@@ -9,6 +9,9 @@
 #include "sweep/convergence_plot.h"
 #include "sweep/page.h"
 
+#include <cmath>
+#include <cstring>
+
 namespace opal::fuzz {
 
 namespace {
@@ -58,6 +61,61 @@ const TextFormat format = {
             return below(4, random) == 0 ? device : record;
         }};
 
+// All values within a value, itself included.
+void gather(nlohmann::json &value, std::vector<nlohmann::json *> &all) {
+    all.push_back(&value);
+    if (value.is_structured())
+        for (nlohmann::json &child : value)
+            gather(child, all);
+}
+
+// The text with one value changed, and still JSON; the text itself where it is none.
+std::string with_other_value(const std::string &text, Random &random) {
+    static const std::vector<nlohmann::json> others = {0,
+                                                       -1,
+                                                       1,
+                                                       0.5,
+                                                       1e308,
+                                                       -1e308,
+                                                       5e-324,
+                                                       2147483648u,
+                                                       -2147483649,
+                                                       4294967296,
+                                                       18446744073709551615u,
+                                                       NAN,
+                                                       true,
+                                                       "",
+                                                       "a",
+                                                       "a\"<b>",
+                                                       "../a",
+                                                       nullptr,
+                                                       nlohmann::json::array(),
+                                                       nlohmann::json::object()};
+    nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+    if (json.is_discarded())
+        return text;
+    std::vector<nlohmann::json *> all;
+    gather(json, all);
+    nlohmann::json &value = *all[below(all.size(), random)];
+    const nlohmann::json copy = *all[below(all.size(), random)];
+    switch (below(5, random)) {
+    case 0: // in the place of another
+        value = copy;
+        break;
+    case 1: // one more, or one less
+        if (value.is_array() && !value.empty() && below(2, random) == 0)
+            value.erase(below(value.size(), random));
+        else if (value.is_array())
+            value.push_back(value.empty() ? copy : value[below(value.size(), random)]);
+        else if (value.is_object() && !value.empty())
+            value.erase(std::next(value.begin(), std::ptrdiff_t(below(value.size(), random))));
+        break;
+    default:
+        value = one_of(others, random);
+    }
+    return dump(json, 1);
+}
+
 void show(const SweepRecord &record, const std::filesystem::path &folder) {
     const SweepSummary summary = summarise(record);
     json_of(summary);
@@ -87,5 +145,13 @@ void try_input(std::string_view input) {
 } // namespace opal::fuzz
 
 extern "C" size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t max_size, unsigned seed) {
+    if (opal::fuzz::Random random(seed); opal::fuzz::below(3, random) > 0) {
+        const std::string text =
+            opal::fuzz::with_other_value(std::string(reinterpret_cast<const char *>(data), size), random);
+        if (text.size() <= max_size) {
+            std::memcpy(data, text.data(), text.size());
+            return text.size();
+        }
+    }
     return opal::fuzz::mutate(opal::fuzz::format, data, size, max_size, seed);
 }
