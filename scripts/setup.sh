@@ -9,7 +9,7 @@ packages=(
     pocl-opencl-icd                                              # an OpenCL device: the CPU
     libopenexr-dev libpng-dev zlib1g-dev libpugixml-dev          # images and XML
     libtinyobjloader-dev                                         # meshes
-    libfmt-dev nlohmann-json3-dev                                # text, JSON
+    libfmt-dev nlohmann-json3-dev libxxhash-dev                  # text, JSON, hashes
     catch2                                                       # tests
     "$@"
 )

@@ -33,7 +33,9 @@
     /* a tree of the other triangles, walked lane by lane */ \
     OPAL_FEATURE_ROW(tree, "tree") \
     /* the tree is larger than a core's caches: walks prefetch waiting children */ \
-    OPAL_FEATURE_ROW(large_tree, "large_tree")
+    OPAL_FEATURE_ROW(large_tree, "large_tree") \
+    /* a path may be endless: a launch ends after so many rounds, and the next one goes on with its paths */ \
+    OPAL_FEATURE_ROW(endless_paths, "endless_paths")
 
 #define OPAL_FEATURE_ROW(name, shown) FEATURE_##name,
 enum { OPAL_FEATURES FEATURE_COUNT };

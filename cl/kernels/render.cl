@@ -5,6 +5,7 @@
 #include "integrators/steps.cl"
 #include "kernels/queue.cl"
 #include "kernels/retire.cl"
+#include "kernels/unfinished.cl"
 #include "scene.cl"
 #include "shared/counters.h"
 #include "shared/types.h"
@@ -15,8 +16,16 @@
 #include "kernels/many_lanes/path_starts.cl"
 #endif
 
+// Where paths may be endless, a launch ends after most_rounds rounds. Its work-items then lie in `unfinished`, and
+// *any_unfinished is set. A launch that goes on with them has `again`. A launch of 0 rounds sets *any_unfinished to the
+// bytes of a work-item there.
 kernel void render(SCENE_PARAMETERS, global float *samples, uint first_item, uint items, uint tile_width,
-                   uint tile_height, uint chunks, uint chunk_samples, uint pass_first, uint pass_samples) {
+                   uint tile_height, uint chunks, uint chunk_samples, uint pass_first, uint pass_samples,
+                   global Unfinished *unfinished, global uint *any_unfinished, uint most_rounds, uint again) {
+    if (OPAL_HAS_endless_paths && most_rounds == 0) {
+        *any_unfinished = sizeof(Unfinished);
+        return;
+    }
     Scene scene = SCENE_OF_PARAMETERS;
     uint counters[COUNTERS] = {0};
     scene.counters = counters;
@@ -34,6 +43,9 @@ kernel void render(SCENE_PARAMETERS, global float *samples, uint first_item, uin
     // it 1.6 times as fast (cbox_mis, H200) as one with a break.
     mask active = NO_LANES;
     uint ended = lanes_of(ALL_LANES); // the lanes whose path has ended, a bit each
+    uint rounds = 0;
+    if (OPAL_HAS_endless_paths && again)
+        active = take_up(unfinished + get_global_id(0), &scene, &path, &starts, &ended);
     do {
         if (ended) active = active | refill(&scene, &starts, &path, ended);
         ended = 0;
@@ -47,5 +59,10 @@ kernel void render(SCENE_PARAMETERS, global float *samples, uint first_item, uin
             active = active_next;
             if (ended) retire(&scene, samples, &starts.queue, &path, ended);
         }
-    } while (ended || ANY(active));
+        if (OPAL_HAS_endless_paths) rounds++;
+    } while ((!OPAL_HAS_endless_paths || rounds < most_rounds) && (ended || ANY(active)));
+    if (OPAL_HAS_endless_paths) {
+        if (ended || ANY(active)) *any_unfinished = 1;
+        keep(unfinished + get_global_id(0), &scene, &path, &starts, active, ended);
+    }
 }

@@ -68,8 +68,11 @@ void note(const std::string &line) {
 }
 
 void warn(const std::string &line) {
-    kept_warnings.push_back(line);
-    say("warning: ", line.c_str());
+    constexpr size_t most_warnings = 1000; // a file may ask for a million; each stands in the reports, too
+    if (kept_warnings.size() > most_warnings)
+        return;
+    kept_warnings.push_back(kept_warnings.size() < most_warnings ? line : "more warnings follow, which are not told");
+    say("warning: ", kept_warnings.back().c_str());
 }
 
 const std::vector<std::string> &warnings() { return kept_warnings; }

@@ -16,7 +16,7 @@ void info(const std::string &line);
 void set_verbose(bool verbose);       // --verbose
 void detail(const std::string &text); // printed only with --verbose
 void note(const std::string &line);   // prints "note: ...": harmless, and worth knowing once; silent with --quiet
-void warn(const std::string &line);   // prints "warning: ..."
+void warn(const std::string &line);   // prints "warning: ..."; of more than 1000 only that there are more
 const std::vector<std::string> &warnings();
 void forget_warnings();                       // those so far: the next render's reports begin anew
 void tell_error(const char *line);            // prints "error: ..."

@@ -60,13 +60,20 @@ std::string with_hyphens(std::string name) {
 }
 
 std::string joined(const std::vector<std::string> &names) {
+    constexpr size_t most_told = 100; // Opal's own tables are shorter; the names of a user's file may be a million
+    const size_t told = std::min(names.size(), most_told);
     std::string text;
-    for (const std::string &name : names)
-        text += (text.empty() ? "" : ", ") + name;
+    for (size_t i = 0; i < told; ++i)
+        text += (text.empty() ? "" : ", ") + names[i];
+    if (told < names.size())
+        text += fmt::format(" and {} more", names.size() - told);
     return text.empty() ? "none" : text;
 }
 
 std::string nearest_name(std::string_view name, const std::vector<std::string> &known) {
+    constexpr size_t most_letters = 1000, most_names = 1000; // of a user's file: it takes letters^2 * names steps
+    if (name.size() > most_letters || known.size() > most_names)
+        return "";
     std::string nearest;
     size_t least = std::max<size_t>(name.size() / 3, 1) + 1;
     for (const std::string &candidate : known) {

@@ -12,7 +12,7 @@
 namespace opal {
 
 // The known name nearest by edit distance (Levenshtein 1966); else the name that other renderers have for it ("nee" is
-// emitter); else the one that begins with these letters; else "".
+// emitter); else the one that begins with these letters; else "", also where there are more than 1000 to choose from.
 std::string nearest_name(std::string_view name, const std::vector<std::string> &known);
 
 std::string with_hyphens(std::string name); // as the command line spells it: "int_ior" -> "int-ior"

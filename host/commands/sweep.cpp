@@ -55,9 +55,7 @@ std::string hash_of(const SceneDescription &scene) {
     for (const Mesh &mesh : scene.meshes)
         if (const auto *m = std::get_if<TriangleMesh>(&mesh.shape))
             bytes.append(reinterpret_cast<const char *>(m->positions.data()), m->positions.size() * sizeof(Vec3));
-    Fnv1a hash;
-    hash.add(std::as_bytes(std::span(bytes)));
-    return fmt::format("{:016x}", hash.value());
+    return xxh128(bytes);
 }
 
 Image read_reference(const std::string &file, const SceneDescription &scene) {

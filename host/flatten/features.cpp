@@ -1,10 +1,12 @@
 #include "flatten/features.h"
 
+#include "flatten/distribution.h"
 #include "textures/list.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace opal {
 namespace {
@@ -21,6 +23,21 @@ std::string plural(std::size_t count, const char *one, const char *many) {
 // A tree of more bytes is large: its nodes are prefetched. Prefetching costs 2 to 5 % of a ray's time in trees of 0.1
 // to 3 MiB and saves 6 % at 110 MiB.
 constexpr std::size_t large_tree_bytes = 4 << 20;
+
+// Paths up to this length are finished in the launch that starts them: roulette's own longest ones, in a scene that
+// loses no light, have 1 / (1 - ROULETTE_MOST) = 10 000 segments on the average (integrators/steps.cl).
+constexpr double roulette_most = 0.9999, longest_path_of_a_launch = 2 / (1 - roulette_most);
+
+// The segments of a path that loses no light, on the average.
+double longest_path(const Strategy &strategy) {
+    const double limit = strategy.max_depth == no_limit ? INFINITY : strategy.max_depth;
+    if (!integrator_of(strategy).reads(AXIS_rr)) // only specular chains go on, by a roulette of their own
+        return 1;
+    if (strategy[AXIS_rr] == CHOICE_rr_off)
+        return limit;
+    const double survival = strategy[AXIS_rr] == CHOICE_rr_fixed ? drawn_probability(strategy.rr_prob) : roulette_most;
+    return std::min(limit, strategy.rr_depth + 1 / (1 - survival));
+}
 
 class Decider {
 public:
@@ -130,6 +147,12 @@ public:
                 fmt::format("{:.1f} MiB of nodes and blocks", double(scene.tree_bytes()) / (1 << 20))};
     }
 
+    Decision endless_paths() const {
+        const double segments = longest_path(description.strategy);
+        return {segments > longest_path_of_a_launch,
+                segments == INFINITY ? "nothing ends a path" : fmt::format("up to {:.3g} segments", segments)};
+    }
+
 private:
     const SceneDescription &description;
     const FlatScene &scene;
@@ -222,8 +245,9 @@ Features find_features(const SceneDescription &description, const FlatScene &sce
     Features features;
     const bool specialise = !description.strategy.is_general();
     for (unsigned i = 0; i < FEATURE_COUNT; i++)
-        features.list[i] = specialise ? Feature{decisions[i].on, decisions[i].reason}
-                                      : Feature{general_has(i, lanes), "the general kernel"};
+        features.list[i] = specialise || i == FEATURE_endless_paths // a general kernel of its own
+                               ? Feature{decisions[i].on, decisions[i].reason}
+                               : Feature{general_has(i, lanes), "the general kernel"};
     for (int axis = 0; axis < AXIS_COUNT; axis++) {
         features.axes[axis] = specialise ? description.strategy[axis] : -1;
         features.axis_reasons[axis] = specialise ? "chosen" : "the general kernel: decided at run time";

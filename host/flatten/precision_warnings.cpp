@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 namespace opal {
 
@@ -43,17 +44,30 @@ public:
             check_bsdf(mesh.bsdf, mesh.bsdf.place.line ? mesh.bsdf.place : mesh.place);
         }
         check_lights();
+        for (const auto &[text, kind] : kinds_)
+            if (kind.count > most_told)
+                lines_[kind.last] += fmt::format(" (and {} more like this)", kind.count - most_told);
         return std::move(lines_);
     }
 
 private:
+    static constexpr size_t most_told = 20; // of one kind: a scene may have a million of them
+    struct Kind {
+        size_t count = 0, last = 0; // the warnings, and the index of the last one in lines_
+    };
     const SceneDescription &scene_;
     const FlatScene &flat_;
     const Extent extent_;
     std::vector<std::string> lines_;
+    std::map<std::string_view, Kind> kinds_; // by their text before the numbers are put in
 
     template <class... Arguments>
     void add_warning(const SourcePlace &place, fmt::format_string<Arguments...> text, Arguments &&...arguments) {
+        const fmt::string_view form = text;
+        Kind &kind = kinds_[{form.data(), form.size()}];
+        if (++kind.count > most_told)
+            return;
+        kind.last = lines_.size();
         lines_.push_back(place.text() + ": " + fmt::format(text, std::forward<Arguments>(arguments)...));
     }
 

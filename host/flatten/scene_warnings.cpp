@@ -105,6 +105,18 @@ public:
         extents_.push_back({camera, camera});
     }
 
+    // Whether it takes too long to ask: each part of a light is compared with each mesh.
+    bool is_too_large() const {
+        constexpr double most_pairs = 1e7; // a second at the most
+        double parts = 0;
+        for (const Mesh &mesh : scene_.meshes) {
+            const auto *triangles = std::get_if<TriangleMesh>(&mesh.shape);
+            if (mesh.radiance)
+                parts += triangles ? double(std::min(triangles->triangles.size(), most_triangles)) : 1;
+        }
+        return parts * double(extents_.size()) > most_pairs;
+    }
+
     // Whether mesh `i`, which emits, lights neither another mesh nor itself, and is dark from the camera.
     bool faces_away(size_t i) const {
         return !scene_.meshes[i].emits_on_both_sides &&
@@ -154,6 +166,8 @@ void check_lights(const SceneDescription &scene, const std::vector<Extent> &exte
     if (!scene.lights.empty() || !integrator_of(scene.strategy).has(OPAL_ASKS_LIGHTS))
         return;
     const LightCheck check(scene, extents);
+    if (check.is_too_large())
+        return;
     size_t count = 0;
     const Mesh *first = nullptr;
     for (size_t i = 0; i < scene.meshes.size(); ++i)

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <unordered_map>
 #include <utility>
 
 namespace opal {
@@ -102,6 +103,7 @@ private:
     std::optional<double> tr_; // 1 - d as the current material's Tr says it
     MtlMaterial material_;
     std::vector<MtlMaterial> materials_;
+    std::unordered_map<std::string, size_t> index_; // in materials_, by name
     size_t unknown_count_ = 0;
     std::string unknown_, unknown_place_;
 
@@ -120,13 +122,12 @@ private:
                 warn(fmt::format("{}: material '{}': d {:g} and Tr {:g} contradict each other: d counts",
                                  material_.place.text(), material_.name, d->second, *tr_));
         }
-        const auto same = std::find_if(materials_.begin(), materials_.end(),
-                                       [&](const MtlMaterial &m) { return m.name == material_.name; });
-        if (same == materials_.end())
+        const auto [same, is_new] = index_.try_emplace(material_.name, materials_.size());
+        if (is_new)
             materials_.push_back(std::move(material_));
         else
             warn(fmt::format("{}: a second material '{}': the first, at {}, counts", material_.place.text(),
-                             material_.name, same->place.text()));
+                             material_.name, materials_[same->second].place.text()));
     }
 
     void read_line(std::string_view line) {

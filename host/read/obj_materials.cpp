@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <set>
+#include <unordered_map>
 
 namespace opal {
 
@@ -13,7 +14,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Materials = std::map<std::string, MtlMaterial>;
+// Materials by their names, and the names by themselves without what seems to be a comment at their ends.
+struct Materials {
+    std::unordered_map<std::string, MtlMaterial> by_name;
+    std::unordered_map<std::string, std::string> full_names;
+};
 
 fs::path beside(const fs::path &obj, std::string name) {
     std::replace(name.begin(), name.end(), '\\', '/');
@@ -59,24 +64,25 @@ Materials read_libraries(const ObjFile &obj, const fs::path &file) {
     for (const ObjLibrary &library : obj.libraries)
         for (const fs::path &path : files_of(library, file))
             if (known.insert(path).second)
-                for (MtlMaterial &material : read_mtl(path))
-                    materials.try_emplace(material.name, material);
+                for (MtlMaterial &material : read_mtl(path)) {
+                    materials.full_names.try_emplace(without_comment(material.name), material.name);
+                    materials.by_name.try_emplace(material.name, material);
+                }
     return materials;
 }
 
 // The material of that name, or without the comment that one of the two names seems to end with; null if there is none.
 const MtlMaterial *find_material(const Materials &materials, const std::string &name) {
     for (std::string tried = name;;) {
-        if (const auto found = materials.find(tried); found != materials.end())
+        if (const auto found = materials.by_name.find(tried); found != materials.by_name.end())
             return &found->second;
         const size_t comment = tried.rfind(" #");
         if (comment == std::string::npos)
             break;
         tried.erase(std::min(tried.find_last_not_of(' ', comment) + 1, comment));
     }
-    const auto found = std::find_if(materials.begin(), materials.end(),
-                                    [&](const auto &entry) { return without_comment(entry.first) == name; });
-    return found == materials.end() ? nullptr : &found->second;
+    const auto found = materials.full_names.find(name);
+    return found == materials.full_names.end() ? nullptr : &materials.by_name.at(found->second);
 }
 
 // The triangles of each material, by index, in the order of the materials' first use. OPAL_NONE: of those before the

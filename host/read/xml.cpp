@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <set>
 
 namespace opal {
 
@@ -88,12 +89,12 @@ std::vector<XmlNode> XmlNode::children(const MistakeHandler &mistake) const {
 
 void XmlNode::require_attributes(std::initializer_list<const char *> names, const MistakeHandler &mistake,
                                  const AttributeHandler &unknown) const {
-    std::vector<std::string> known(names.begin(), names.end()), seen;
+    const std::vector<std::string> known(names.begin(), names.end());
+    std::set<std::string> seen;
     for (pugi::xml_attribute attribute : node_.attributes()) {
         std::string name = attribute.name();
-        if (std::find(seen.begin(), seen.end(), name) != seen.end())
+        if (!seen.insert(name).second)
             tell(mistake, place(), fmt::format("<{}> has the attribute '{}' twice", tag(), name));
-        seen.push_back(name);
         if (std::find(known.begin(), known.end(), name) != known.end())
             continue;
         const std::string message = unknown_name("attribute", name, known, fmt::format(" of <{}>", tag()));
@@ -102,7 +103,7 @@ void XmlNode::require_attributes(std::initializer_list<const char *> names, cons
         unknown(name, message);
     }
     for (const std::string &name : known)
-        if (std::find(seen.begin(), seen.end(), name) == seen.end())
+        if (!seen.contains(name))
             tell(mistake, place(), fmt::format("<{}> lacks the attribute '{}'", tag(), name));
 }
 
@@ -191,10 +192,10 @@ private:
 
     void lack(pugi::xml_node node, const std::string &name) {
         lacks_some = true;
-        std::vector<std::string> known;
-        for (const auto &[other, value] : values_)
-            known.push_back(other);
-        const std::string nearest = nearest_name(name, known);
+        if (known_.empty())
+            for (const auto &[other, value] : values_)
+                known_.push_back(other);
+        const std::string nearest = nearest_name(name, known_);
         tell(
             mistake_, XmlNode(document_, node).place(),
             fmt::format("${} has no value{}: -D {}=VALUE gives one, or <default name=\"{}\" value=\"...\"/> in <scene>",
@@ -204,6 +205,7 @@ private:
     const XmlDocument &document_;
     const Definitions &values_;
     const MistakeHandler &mistake_;
+    std::vector<std::string> known_; // names, once one is lacking
 };
 
 } // namespace

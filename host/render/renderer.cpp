@@ -37,6 +37,9 @@ constexpr unsigned cpu_tile_side = 8, cpu_items_a_core = 64, max_cpu_items_a_lau
 // GPU: one pixel for each work-item, and enough of them to hide the latency of its memory.
 constexpr unsigned gpu_tile_side = 1, gpu_items = 1u << 17, max_gpu_items_a_launch = 1u << 20;
 
+// Where paths may be endless: rounds of the loop in a launch.
+constexpr double least_rounds = 16, max_rounds = 1 << 24;
+
 unsigned ceil_div(unsigned a, unsigned b) { return (a + b - 1) / b; }
 
 // The numbers 0 .. count - 1, sorted by the fractional parts of their multiples of the golden ratio. Launches are
@@ -70,6 +73,7 @@ struct Renderer::OnDevice {
     FlatScene tables; // that the buffers of `scene` may share
     std::vector<cl::Buffer> scene;
     cl::Buffer samples, invalid;
+    cl::Buffer unfinished, any_unfinished; // the items of a launch, where paths may be endless; one word
     std::vector<FilmBand> bands;
     cl::Kernel render, gather, gather_around, clear;
 };
@@ -90,7 +94,8 @@ Renderer::LaunchShape Renderer::launch_shape() const {
 Renderer::Renderer(const Device &device, FlatScene scene, const RenderOptions &options)
     : device_(device), settings_(scene.settings), crop_(scene.crop), options_(options),
       pixels_(size_t(scene.settings.film.width) * scene.settings.film.height),
-      wide_filter_(is_wide_filter(scene.settings)), on_device_(std::make_unique<OnDevice>()) {
+      wide_filter_(is_wide_filter(scene.settings)), endless_paths_(scene.features[FEATURE_endless_paths]),
+      on_device_(std::make_unique<OnDevice>()) {
     shape_ = launch_shape();
     const unsigned long long film_bytes =
         4ull * (FILM_PLANES + 1 + (wide_filter_ ? FILM_WEIGHTED_PLANES : 0)); // of a pixel; the 1 is its count
@@ -117,6 +122,8 @@ Renderer::Renderer(const Device &device, FlatScene scene, const RenderOptions &o
     on_device_->samples =
         make_buffer(device, CL_MEM_READ_WRITE, pixels_ * sample_bytes * buffer_spp_, nullptr, "the samples of a pass");
     on_device_->invalid = make_zeros<cl_uint>(device, 1 + 2 * OPAL_INVALID_RECORDS, "the list of invalid samples");
+    on_device_->any_unfinished = make_zeros<cl_uint>(device, 1, "a word");
+    on_device_->unfinished = on_device_->any_unfinished; // a place that no kernel reads, but where paths may be endless
     for (size_t first = 0; first < pixels_; first += band_pixels) {
         const size_t pixels = std::min<size_t>(band_pixels, pixels_ - first);
         const auto planes = [&](unsigned count) { // gather writes them in the first pass
@@ -138,6 +145,8 @@ Renderer::Renderer(const Device &device, FlatScene scene, const RenderOptions &o
     });
     set_film_arguments();
     compile_seconds_ += film_seconds + warm_up();
+    if (endless_paths_)
+        make_room_for_unfinished();
 }
 
 Renderer::~Renderer() = default;
@@ -171,10 +180,18 @@ double Renderer::warm_up() {
     with_device(device_.info, [&] {
         on_device_->render.setArg(cl_uint(on_device_->scene.size()) + 1, cl_uint(0));
         set_pass_arguments(on_device_->render, cl_uint(on_device_->scene.size()) + 2, 0, 0);
+        set_round_arguments(0, false);
         return launch(on_device_->render, shape_.items_a_launch);
     });
     kernel_seconds_ = 0;
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Where paths may be endless: the launch of no rounds has told how many bytes an unfinished item takes.
+void Renderer::make_room_for_unfinished() {
+    const unsigned long long bytes = read_buffer<cl_uint>(device_, on_device_->any_unfinished, 1)[0];
+    on_device_->unfinished =
+        make_buffer(device_, CL_MEM_READ_WRITE, bytes * shape_.items_a_launch, nullptr, "unfinished paths");
 }
 
 void Renderer::restart(unsigned seed, unsigned first_sample) {
@@ -224,28 +241,64 @@ void Renderer::set_pass_arguments(cl::Kernel &kernel, unsigned first_argument, u
         kernel.setArg(first_argument++, cl_uint(value));
 }
 
+// most_rounds: of a launch where paths may be endless. again: it goes on with those that the last one has left.
+void Renderer::set_round_arguments(unsigned most_rounds, bool again) {
+    cl_uint argument = cl_uint(on_device_->scene.size()) + 9; // after those of the pass
+    on_device_->render.setArg(argument++, on_device_->unfinished);
+    on_device_->render.setArg(argument++, on_device_->any_unfinished);
+    on_device_->render.setArg(argument++, cl_uint(most_rounds));
+    on_device_->render.setArg(argument, cl_uint(again));
+}
+
+// Renders a launch's items to their end. Where paths may be endless, that takes several launches of about
+// launch_seconds, and goes_on is asked between them. Returns false if it says no.
+bool Renderer::render_items(const std::function<bool()> &goes_on) {
+    if (!endless_paths_) {
+        launch(on_device_->render, shape_.items_a_launch);
+        return true;
+    }
+    double rounds = most_rounds_;
+    for (bool again = false;; again = true) {
+        set_round_arguments(unsigned(rounds), again);
+        device_.handles->queue.enqueueFillBuffer(on_device_->any_unfinished, cl_uint(0), 0, sizeof(cl_uint));
+        const auto start = std::chrono::steady_clock::now(); // no event's: some drivers' clocks stand still
+        launch(on_device_->render, shape_.items_a_launch);
+        if (!read_buffer<cl_uint>(device_, on_device_->any_unfinished, 1)[0])
+            return true;
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        rounds = std::clamp(rounds * std::clamp(options_.launch_seconds / seconds, 0.1, 2.0), least_rounds, max_rounds);
+        if (!again) // later ones have fewer items to go on with
+            most_rounds_ = rounds;
+        if (!goes_on())
+            return false;
+    }
+}
+
 bool Renderer::render_pass(unsigned samples, const OnLaunch &on_launch) {
     const unsigned chunk_samples = ceil_div(samples, shape_.chunks), items = shape_.tiles * shape_.chunks;
     const cl_uint first_item_argument = cl_uint(on_device_->scene.size()) + 1; // after the tables and the samples
     set_pass_arguments(on_device_->render, first_item_argument + 1, chunk_samples, samples);
     set_pass_arguments(on_device_->clear, 3, chunk_samples, samples);
-    double seconds = 0;
+    const double seconds_before = kernel_seconds_;
     bool stopped = false;
     unsigned done = 0;
+    const auto goes_on = [&] {
+        return !on_launch || on_launch(next_sample_ + samples * double(done) / items, kernel_seconds_);
+    };
     for (const unsigned index : spread_order(ceil_div(items, shape_.items_a_launch))) {
         const unsigned first = index * shape_.items_a_launch;
-        if (stopped) { // marks the samples of this launch as missing
+        on_device_->render.setArg(first_item_argument, cl_uint(first));
+        if (stopped || !render_items(goes_on)) { // marks the samples of this launch as missing
+            stopped = true;
             on_device_->clear.setArg(2, cl_uint(first));
             launch(on_device_->clear, shape_.items_a_launch);
             continue;
         }
-        on_device_->render.setArg(first_item_argument, cl_uint(first));
-        seconds += launch(on_device_->render, shape_.items_a_launch);
         done += std::min(shape_.items_a_launch, items - first);
-        stopped = on_launch && !on_launch(next_sample_ + samples * double(done) / items, kernel_seconds_);
+        stopped = !goes_on();
     }
+    seconds_a_sample_ = (kernel_seconds_ - seconds_before) / samples;
     gather(samples);
-    seconds_a_sample_ = seconds / samples;
     next_sample_ += samples;
     return !stopped;
 }

@@ -42,7 +42,8 @@ public:
 
     // Adds samples [next_sample(), end) of each pixel to the film. Returns false if it was stopped: then the finished
     // launches of the last pass are added, too, so that pixels differ in their sample counts and may have none after
-    // the first pass. Pixels with more samples lie evenly over the image.
+    // the first pass. Pixels with more samples lie evenly over the image. Where paths may be endless
+    // (FEATURE_endless_paths), they go on from launch to launch, with a callback after each.
     bool render(unsigned end, const OnLaunch &on_launch = {});
 
     // The samples of a pixel in the renders from the next restart on: the strata of --sampler stratified. At first the
@@ -77,6 +78,9 @@ private:
     void set_film_arguments();
     double warm_up();
     bool render_pass(unsigned samples, const OnLaunch &on_launch);
+    void make_room_for_unfinished();
+    void set_round_arguments(unsigned most_rounds, bool again);
+    bool render_items(const std::function<bool()> &goes_on);
     void set_pass_arguments(cl::Kernel &kernel, unsigned first_argument, unsigned chunk_samples, unsigned pass_samples);
     double launch(const cl::Kernel &kernel, unsigned items);
     unsigned next_pass_samples(unsigned left) const;
@@ -92,11 +96,13 @@ private:
     LaunchShape shape_{};
     size_t pixels_ = 0; // of the device's film
     bool wide_filter_ = false;
+    bool endless_paths_ = false;
     bool empty_ = true; // no pass was added to the film yet
     std::unique_ptr<OnDevice> on_device_;
     unsigned next_sample_ = 0;
     unsigned buffer_spp_ = 0; // samples of each pixel that there is room for
     double kernel_seconds_ = 0, compile_seconds_ = 0;
+    double most_rounds_ = 1024;   // where paths may be endless: of a launch that starts paths
     double seconds_a_sample_ = 0; // kernel time of one sample of each pixel in the last pass; 0: no pass yet
 };
 

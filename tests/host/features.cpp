@@ -57,6 +57,7 @@ TEST_CASE("features are what the scene and the strategy ask for, each with a rea
     SceneDescription description = scene_of({diffuse(one_triangle), light(one_triangle, {1, 1, 1})});
     description.meshes[0].bsdf = bsdf_mirror_record{};
     description.lights = {{emitter_point{{1, 1, 1}, {1, 1, 1}}, {}}};
+    description.strategy[AXIS_rr] = CHOICE_rr_throughput;
     const auto on = [](const SceneDescription &scene) {
         std::set<std::string> names;
         const Features features = flatten(scene, 8).features;
@@ -93,11 +94,33 @@ TEST_CASE("features are what the scene and the strategy ask for, each with a rea
         description.camera.filter = {FILTER_tent, 0.5, 0.5, 0, 0, true};
         CHECK(is_wide_filter(flatten(description, 8).settings));
     }
+    SECTION("paths that may be endless") {
+        Strategy &strategy = description.strategy;
+        const auto endless = [&] { return flatten(description, 8).features[FEATURE_endless_paths]; };
+        CHECK_FALSE(endless());
+        strategy.rr_depth = 1'000'000;
+        CHECK(endless());
+        strategy.max_depth = 100;
+        CHECK_FALSE(endless());
+        strategy[AXIS_rr] = CHOICE_rr_off;
+        CHECK_FALSE(endless());
+        strategy.max_depth = 1'000'000;
+        CHECK(endless());
+        strategy.specialise = Specialise::off;
+        CHECK(endless());
+        strategy.max_depth = no_limit;
+        strategy.rr_depth = 3;
+        strategy[AXIS_rr] = CHOICE_rr_fixed;
+        strategy.rr_prob = 1 - 1e-5;
+        CHECK(endless());
+        strategy.rr_prob = 0.95;
+        CHECK_FALSE(endless());
+    }
     SECTION("everything without specialisation") {
         description.strategy.specialise = Specialise::off;
         const Features features = flatten(description, 8).features;
         for (unsigned feature = 0; feature < FEATURE_COUNT; feature++)
-            CHECK(features[feature] == (feature != FEATURE_large_tree));
+            CHECK(features[feature] == (feature != FEATURE_large_tree && feature != FEATURE_endless_paths));
         CHECK_FALSE(flatten(description, 1).features[FEATURE_face_list]);
         for (int axis : features.axes)
             CHECK(axis == -1);

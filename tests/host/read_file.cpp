@@ -1,5 +1,6 @@
 // Reading files: every reader names a file that cannot be read, and takes no failure for the file's end.
 #include "base/read_file.h"
+#include "base/hash.h"
 #include "image/image.h"
 #include "support/error_of.h"
 #include "support/scratch.h"
@@ -36,6 +37,12 @@ void check_fails(const std::string &arguments, const std::string &message) {
 }
 
 } // namespace
+
+TEST_CASE("The hash of a file is XXH3's of 128 bits", "[read_file]") { // figures of xxhash 0.8.1's xxh128sum
+    CHECK(xxh128("") == "99aa06d3014798d86001c324468d497f");
+    CHECK(xxh128("opal") == "c580edc7dbb0e30bb40cccda770b14d0");
+    CHECK(xxh128(std::string(100000, 'a')) == "819d5302938c790308f809ef04c54838");
+}
 
 TEST_CASE("A file is read whole, be it empty, long or a pipe that delivers piece by piece", "[read_file]") {
     const ScratchFolder folder;

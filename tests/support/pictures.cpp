@@ -21,6 +21,7 @@ Renderer renderer_of(const SceneDescription &scene, const RenderSetup &setup) {
     options.build.math = setup.math;
     options.sources = setup.sources;
     options.max_pass_samples = setup.max_pass_samples;
+    options.launch_seconds = setup.launch_seconds;
     return Renderer(device(), flatten(scene, options.build.lanes), options);
 }
 

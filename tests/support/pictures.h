@@ -15,6 +15,7 @@ struct RenderSetup {
     int lanes = 0; // 0: the device's own
     const Sources *sources = &Sources::embedded();
     unsigned max_pass_samples = 0;
+    double launch_seconds = RenderOptions().launch_seconds;
     MathMode math = MathMode::precise;
 };
 

@@ -99,14 +99,15 @@ void Properties::add_property(const XmlNode &node) {
     std::string name = known_property(object_, node.attribute("name"));
     if (const Property *first = look(name))
         context_.mistake(node, "property '" + name + "' is repeated; it stands first at " + first->node.place().text());
-    else
+    else {
+        place_.emplace(name, properties_.size());
         properties_.push_back({node, name, std::move(value)});
+    }
 }
 
 const Properties::Property *Properties::look(const std::string &name) const {
-    auto found =
-        std::find_if(properties_.begin(), properties_.end(), [&](const Property &p) { return p.name == name; });
-    return found == properties_.end() ? nullptr : &*found;
+    const auto found = place_.find(name);
+    return found == place_.end() ? nullptr : &properties_[found->second];
 }
 
 Properties::Property *Properties::ask(const std::string &name) {

@@ -7,6 +7,7 @@
 #include "read/nori/context.h"
 
 #include <optional>
+#include <unordered_map>
 #include <variant>
 
 namespace opal {
@@ -119,6 +120,7 @@ private:
     size_t mistakes_before_ = 0;
     std::string lacking_; // what the object lacks first, as a message
     std::vector<Property> properties_;
+    std::unordered_map<std::string, size_t> place_; // in properties_, by name
     std::vector<Child> children_;
     std::vector<std::string> known_properties_, known_children_;
 };
