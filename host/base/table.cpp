@@ -79,6 +79,9 @@ std::string nearest_name(std::string_view name, const std::vector<std::string> &
     std::string nearest;
     size_t least = std::max<size_t>(name.size() / 3, 1) + 1;
     for (const std::string &candidate : known) {
+        // Each letter that one has more costs an edit: a name of a megabyte is compared with none.
+        if (std::max(name.size(), candidate.size()) - std::min(name.size(), candidate.size()) >= least)
+            continue;
         size_t distance = edit_distance(name, candidate);
         if (distance < least && distance < candidate.size()) {
             least = distance;

@@ -27,11 +27,13 @@ int filter_reach(const Filter &filter, const Crop &window) {
         std::ceil(std::clamp<double>(filter_extent(filter) - 0.5, 0, std::max(window.of_width, window.of_height))));
 }
 
-// The crop, and around it the pixels within reach of the filter, as far as the image goes.
-PixelWindow film_window(const Crop &crop, int reach) {
-    const int left = std::max(0, crop.x - reach), top = std::max(0, crop.y - reach);
-    const int right = std::min(crop.of_width, crop.x + crop.width + reach),
-              bottom = std::min(crop.of_height, crop.y + crop.height + reach);
+// The crop, and around it the pixels within reach of the filter, as far as the image goes. Sums of the largest sizes
+// take more than 32 bits.
+PixelWindow film_window(const Crop &crop, std::int64_t reach) {
+    const std::int64_t left = std::max<std::int64_t>(0, crop.x - reach),
+                       top = std::max<std::int64_t>(0, crop.y - reach);
+    const std::int64_t right = std::min<std::int64_t>(crop.of_width, reach + crop.x + crop.width),
+                       bottom = std::min<std::int64_t>(crop.of_height, reach + crop.y + crop.height);
     return {uint(left), uint(top), uint(right - left), uint(bottom - top)};
 }
 
