@@ -1,24 +1,37 @@
 #include "base/process.h"
 
 #include "base/error.h"
+#include "base/log.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
+#include <sstream>
 #include <utility>
 
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 extern char **environ;
 
 namespace opal {
+
+namespace {
+
+// Not stdout, to which drivers print.
+constexpr int answer_descriptor = 3;
+constexpr size_t longest_answer = 4 << 20; // bytes; 100 devices take 50 000
+bool answering = false;
+
+} // namespace
 
 std::string Ending::signal_name() const { return strsignal(signal); }
 
@@ -28,8 +41,9 @@ ChildProcess::ChildProcess(const std::filesystem::path &binary, const std::vecto
         throw Error(fmt::format("cannot start a process: {}", std::strerror(errno)));
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
-    posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, ends[1], answer_descriptor);
+    for (const int printed : {STDOUT_FILENO, STDERR_FILENO})
+        posix_spawn_file_actions_addopen(&actions, printed, "/dev/null", O_WRONLY, 0);
     std::string name = "opal";
     std::vector<std::string> words = arguments;
     std::vector<char *> pointers = {name.data()};
@@ -48,45 +62,111 @@ ChildProcess::ChildProcess(const std::filesystem::path &binary, const std::vecto
 }
 
 ChildProcess::ChildProcess(ChildProcess &&other) noexcept
-    : process_(std::exchange(other.process_, -1)), pipe_(std::exchange(other.pipe_, -1)),
+    : process_(std::exchange(other.process_, -1)), pipe_(std::exchange(other.pipe_, -1)), status_(other.status_),
       said_(std::move(other.said_)) {}
 
 ChildProcess::~ChildProcess() {
-    if (process_ != -1)
+    if (pipe_ != -1)
         finish(Clock::now());
 }
 
-// Reads the child's stdout until it is closed. False: the deadline came first.
-bool ChildProcess::read_until(Clock::time_point deadline) {
-    for (;;) {
-        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+bool ChildProcess::has_ended() {
+    if (process_ != -1 && waitpid(process_, &status_, WNOHANG) == process_)
+        process_ = -1;
+    return process_ == -1;
+}
+
+// Reads the child's answer until it is closed, too long, or the deadline has come. A process that a driver has started
+// may keep the pipe open: when the child has ended, what lies in the pipe is the end of its answer.
+Ending ChildProcess::read_until(Clock::time_point deadline) {
+    using std::chrono::milliseconds;
+    constexpr milliseconds glance(50);
+    Ending ending;
+    for (bool ended = false;;) {
+        const auto left = std::chrono::ceil<milliseconds>(deadline - Clock::now());
         pollfd wait{pipe_, POLLIN, 0};
-        const int ready = poll(&wait, 1, static_cast<int>(std::max<long long>(left, 0)));
+        const int ready = poll(&wait, 1, ended ? 0 : int(std::clamp(left, milliseconds(0), glance).count()));
         if (ready < 0 && errno == EINTR)
             continue;
-        if (ready <= 0)
-            return false;
+        if (ready <= 0) {
+            if (ended)
+                return ending;
+            ended = has_ended();
+            ending.in_time = ended || Clock::now() < deadline;
+            if (!ending.in_time)
+                return ending;
+            continue;
+        }
         char bytes[4096];
         const ssize_t count = read(pipe_, bytes, sizeof bytes);
         if (count <= 0)
-            return true;
+            return ending;
         said_.append(bytes, static_cast<size_t>(count));
+        ending.too_long = said_.size() > longest_answer;
+        if (ending.too_long)
+            return ending;
     }
 }
 
 Ending ChildProcess::finish(Clock::time_point deadline) {
-    Ending ending;
-    ending.in_time = read_until(deadline);
-    if (!ending.in_time)
-        kill(process_, SIGKILL);
-    close(pipe_);
-    int status = 0;
-    while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+    Ending ending = read_until(deadline);
+    close(std::exchange(pipe_, -1));
+    // The answer is whole, but a driver may hang at the end of the process.
+    while (ending.in_time && !ending.too_long && !has_ended()) {
+        ending.in_time = Clock::now() < deadline;
+        usleep(200);
     }
-    process_ = -1;
-    ending.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-    ending.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
+    if (process_ != -1) {
+        kill(process_, SIGKILL);
+        while (waitpid(process_, &status_, 0) < 0 && errno == EINTR) {
+        }
+        process_ = -1;
+    }
+    ending.signal = WIFSIGNALED(status_) ? WTERMSIG(status_) : 0;
+    ending.exit_code = WIFEXITED(status_) ? WEXITSTATUS(status_) : 0;
     return ending;
 }
+
+void clean_search_paths(char **arguments) {
+    const auto clean = [](const char *name, bool keep_relative) {
+        const char *const before = std::getenv(name);
+        std::istringstream folders(before ? before : "");
+        std::string after;
+        for (std::string folder; std::getline(folders, folder, ':');)
+            if (folder.starts_with('/') || (keep_relative && !folder.empty())) {
+                std::error_code ignored;
+                after += (after.empty() ? "" : ":") + std::filesystem::absolute(folder, ignored).string();
+            }
+        if (!before || after == before)
+            return false;
+        after.empty() ? unsetenv(name) : setenv(name, after.c_str(), 1);
+        return true;
+    };
+    clean("PATH", false);
+    if (clean("LD_LIBRARY_PATH", true))
+        execv("/proc/self/exe", arguments); // returns where there is no /proc: then some drivers may not be found
+}
+
+void begin_answer() {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    answering = fcntl(answer_descriptor, F_SETFD, FD_CLOEXEC) == 0;
+    pollfd reader{answer_descriptor, 0, 0};
+    if (answering && poll(&reader, 1, 0) > 0 && reader.revents & POLLERR) // the parent ended before prctl
+        end_answer();
+}
+
+void answer(const std::string &line) {
+    if (!answering)
+        return print("{}\n", line);
+    const std::string text = line + '\n';
+    for (size_t done = 0; done < text.size();) {
+        const ssize_t count = write(answer_descriptor, text.data() + done, text.size() - done);
+        if (count < 0 && errno != EINTR)
+            return;
+        done += count > 0 ? static_cast<size_t>(count) : 0;
+    }
+}
+
+void end_answer() { _exit(0); }
 
 } // namespace opal

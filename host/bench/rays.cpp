@@ -97,6 +97,7 @@ RaySet RayBench::generate(int kind, size_t count, unsigned seed) {
             kernel.setArg(place++, cl_float(box.hi[axis] - box.lo[axis]));
         kernel.setArg(place++, buffer);
         kernel.setArg(place + 1, cl_uint(stride));
+        const LaunchScope launching(device_, kernel);
         for (size_t first = 0; first < stride; first += items_a_launch * size_t(build_.lanes)) {
             kernel.setArg(place, cl_uint(first));
             device_.handles->queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items_a_launch),
@@ -135,6 +136,7 @@ RayBench::Seconds RayBench::trace(cl::Program &program, Batch &batch) {
             kernel.setArg(place++, *buffer);
         for (size_t value : {batch.count, batch.stride, batch.rays_an_item})
             kernel.setArg(place++, cl_uint(value));
+        const LaunchScope launching(device_, kernel);
         cl::Event event;
         const std::clock_t before = std::clock();
         device_.handles->queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(batch.items),

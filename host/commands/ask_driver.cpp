@@ -11,7 +11,7 @@ Command probe_platform_command() {
             .help = "",
             .options = {{.flags = "library", .target = library.get(), .help = "The driver's library"}},
             .run = [library] {
-                print_probe(*library);
+                answer_probe(*library);
                 return 0;
             }};
 }

@@ -1,4 +1,4 @@
-// opal cache: the compiled kernels that PoCL keeps on disk.
+// opal cache: the compiled kernels that are kept on disk.
 #include "base/json.h"
 #include "base/log.h"
 #include "base/table.h"
@@ -6,6 +6,7 @@
 #include "commands/commands.h"
 #include "commands/json_file.h"
 #include "commands/options.h"
+#include "device/kernel_cache.h"
 #include "flatten/flat_scene.h"
 #include "render/renderer.h"
 #include "scene/options.h"
@@ -13,54 +14,17 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <memory>
 
 namespace opal {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 struct Options {
     DeviceOptions device;
     std::string math = "precise", json;
-    bool warm = false;
+    bool warm = false, clear = false;
 };
-
-std::string variable(const char *name) {
-    const char *value = std::getenv(name);
-    return value ? value : "";
-}
-
-// Where PoCL 3 keeps compiled kernels; empty: it knows no place. Drivers of other makers have caches of their own.
-fs::path pocl_cache() {
-    if (const std::string folder = variable("POCL_CACHE_DIR"); !folder.empty())
-        return folder;
-    if (const std::string folder = variable("XDG_CACHE_HOME"); !folder.empty())
-        return fs::path(folder) / "pocl/kcache";
-    const std::string home = variable("HOME");
-    return home.empty() ? fs::path() : fs::path(home) / ".cache/pocl/kcache";
-}
-
-struct Contents {
-    size_t kernels = 0;
-    unsigned long long bytes = 0;
-};
-
-Contents contents_of(const fs::path &folder) {
-    Contents contents;
-    std::error_code error, of_file; // a file may go meanwhile, as PoCL renames some
-    for (fs::recursive_directory_iterator at(folder, fs::directory_options::skip_permission_denied, error), end;
-         !error && at != end; at.increment(error)) {
-        const std::uintmax_t bytes = at->is_regular_file(of_file) ? at->file_size(of_file) : 0;
-        if (of_file || bytes == 0)
-            continue;
-        contents.bytes += bytes;
-        contents.kernels += at->path().extension() == ".so";
-    }
-    return contents;
-}
 
 // Compiles what every scene on a CPU starts with: the general kernel, and those of the film. Returns the seconds.
 double warm(const Options &o, const DevicePick &pick) {
@@ -80,17 +44,27 @@ double warm(const Options &o, const DevicePick &pick) {
 int run(const Options &o) {
     prepare_json(o.json);
     nlohmann::json report = nlohmann::json::object();
+    const CacheFolder &cache = cache_folder();
+    if (o.clear)
+        clear_cache(cache.path);
     if (o.warm) {
         const DevicePick pick = choose_device(o.device);
         const double seconds = warm(o, pick);
         print("compiled       the general kernel, math {}, for {} in {:.3g} s\n", o.math, pick.info.name, seconds);
         report.update(object({{"device", pick.info.name}, {"math", o.math}, {"seconds", {{"compile", seconds}}}}));
     }
-    const fs::path folder = pocl_cache();
-    const Contents contents = contents_of(folder);
-    print("PoCL's cache   {}: {} kernels, {}\n", folder.empty() ? "none, as HOME is not set" : folder.string(),
-          contents.kernels, bytes_text(contents.bytes));
-    report.update(object({{"folder", folder.string()}, {"kernels", contents.kernels}, {"bytes", contents.bytes}}));
+    const CacheContents contents = cache_contents(cache.path);
+    if (cache.path.empty())
+        print("cache          none ({})\n", cache.problem);
+    else
+        print("cache          {}: {} program{}, {} (at most {}){}\n", cache.path.string(), contents.programs,
+              contents.programs == 1 ? "" : "s", bytes_text(contents.bytes), bytes_text(most_cache_bytes),
+              cache.problem.empty() ? "" : "; nothing can be added: " + cache.problem);
+    report.update(object({{"folder", cache.path.string()},
+                          {"programs", contents.programs},
+                          {"bytes", contents.bytes},
+                          {"most_bytes", most_cache_bytes},
+                          {"problem", cache.problem}}));
     write_json(o.json, "cache", report);
     return 0;
 }
@@ -100,18 +74,19 @@ int run(const Options &o) {
 Command cache_command() {
     auto o = std::make_shared<Options>();
     return {.name = "cache",
-            .help = "Show PoCL's cache of compiled kernels, or compile ahead what every scene starts with",
+            .help = "Show the cache of compiled kernels, empty it, or compile ahead what every scene starts with",
             .options = {{.flags = "--warm",
                          .target = &o->warm,
                          .help = "Compile the general kernel, which renders small pictures of all scenes (--specialise "
                                  "auto), so that the first one starts at once"},
+                        {.flags = "--clear", .target = &o->clear, .help = "Empty the cache first"},
                         device_row(o->device),
                         {.flags = "--math",
                          .target = &o->math,
                          .help = "With --warm: the kernel's arithmetic",
                          .check = OneOf<std::string>{names_of(math_modes())}},
                         json_row(o->json, "the cache's folder and size")},
-            .examples = {"opal cache", "opal cache --warm"},
+            .examples = {"opal cache --clear", "opal cache --warm"},
             .run = [o] { return run(*o); }};
 }
 

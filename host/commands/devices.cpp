@@ -58,7 +58,7 @@ void print_table(const std::vector<DeviceInfo> &devices) {
 
 int run_devices(const DevicesOptions &options) {
     prepare_json(options.json);
-    const std::vector<DeviceInfo> devices = list_devices(options.time_limit);
+    const std::vector<DeviceInfo> devices = list_devices(options.time_limit, true);
     print_table(devices);
     const DevicePick pick = pick_device(options.device, devices);
     print("\nrender takes {}: {} ({}). --device takes an index, cpu, gpu, or part of a name.\n", pick.info.index,

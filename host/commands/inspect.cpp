@@ -258,8 +258,8 @@ nlohmann::json json_of(const SceneDescription &scene, const FlatScene &flat, int
 }
 
 int run_inspect(const InspectOptions &options) {
-    prepare_json(options.json);
     const SceneDescription scene = load_scene(options.scene);
+    prepare_json(options.json);
     const int lanes = scene.strategy.lanes ? scene.strategy.lanes : host_vector_width();
     const FlatScene flat = flatten(scene, lanes);
     if (options.cl) {

@@ -24,8 +24,6 @@ namespace opal {
 
 namespace {
 
-const std::string line_mark = "opal-finding "; // drivers print to stdout too
-
 struct Options {
     DeviceOptions device;
     std::string json, cl_dir;
@@ -65,16 +63,21 @@ ChildProcess start(const Job &job, const Variant &variant, const DeviceInfo &dev
 void finish(Job &job, ChildProcess &process, ChildProcess::Clock::time_point deadline, double time_limit) {
     const Ending ending = process.finish(deadline);
     std::istringstream lines(process.said());
-    for (std::string line; std::getline(lines, line);)
-        if (line.starts_with(line_mark)) {
-            const nlohmann::json json = parse_json(line.substr(line_mark.size()));
+    try {
+        for (std::string line; std::getline(lines, line);) {
+            const nlohmann::json json = parse_json(line);
             if (json.contains("problem"))
                 job.problem = json["problem"];
             else
                 job.findings.push_back({json["check"], json["figure"].is_number() ? json["figure"].get<double>() : NAN,
                                         json["limit"], json["passed"], json["subject"]});
         }
-    if (!ending.in_time)
+    } catch (const nlohmann::json::exception &) { // the last line of a process that crashed may be cut
+        job.problem = "gave findings that cannot be read";
+    }
+    if (ending.too_long)
+        job.problem = "gave too many findings to be read";
+    else if (!ending.in_time)
         job.problem = fmt::format("did not end within {:g} s", time_limit);
     else if (ending.signal)
         job.problem = fmt::format("crashed ({})", ending.signal_name());
@@ -230,6 +233,7 @@ int run(const Options &o) {
 
 // The hidden command that a job runs: one group, whose findings it prints.
 int run_group(const std::vector<std::string> &words) {
+    begin_answer();
     if (words.size() < 6)
         throw Error("selftest-group is started by opal selftest");
     const CheckGroup &group = find_row(check_groups(), "group", words[0]);
@@ -243,14 +247,13 @@ int run_group(const std::vector<std::string> &words) {
         options.seed = unsigned(std::stoul(words[5]));
         options.sources = &sources;
         for (const Finding &f : group.run(device, options))
-            print("{}{}\n", line_mark,
-                  dump(object({{"check", f.check},
-                               {"figure", f.figure},
-                               {"limit", f.limit},
-                               {"passed", f.passed},
-                               {"subject", f.subject}})));
+            answer(dump(object({{"check", f.check},
+                                {"figure", f.figure},
+                                {"limit", f.limit},
+                                {"passed", f.passed},
+                                {"subject", f.subject}})));
     } catch (const std::exception &error) {
-        print("{}{}\n", line_mark, dump(object({{"problem", error.what()}})));
+        answer(dump(object({{"problem", error.what()}})));
     }
     return 0;
 }

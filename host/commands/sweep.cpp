@@ -5,6 +5,7 @@
 #include "base/hash.h"
 #include "base/json.h"
 #include "base/log.h"
+#include "base/printable.h"
 #include "base/signals.h"
 #include "base/table.h"
 #include "base/units.h"
@@ -70,7 +71,7 @@ Image read_reference(const std::string &file, const SceneDescription &scene, Fil
     if (const size_t invalid = invalid_pixels(image).count)
         throw Error(fmt::format("--reference {}: {} of its pixels are NaN or infinite", file, invalid));
     const std::string of = image.text("opal.scene");
-    if (!of.empty() && std::filesystem::path(of).filename() != scene.file.filename())
+    if (!of.empty() && std::filesystem::path(of).filename() != as_utf8(scene.file.filename().string()))
         throw Error(fmt::format("--reference {}: is an image of {}, not of {}", file, of, scene.file.string()));
     return image;
 }
@@ -319,7 +320,11 @@ int run(const Options &o) {
     if (std::filesystem::exists(folder / (varied ? "sweep.json" : "vary.json"))) // index.html can be of one only
         throw Error(fmt::format("{}: holds a sweep {} --vary; give another folder with -o", folder.string(),
                                 varied ? "without" : "with"));
-    prepare_json(o.json);
+    std::vector<std::filesystem::path> own;
+    for (const char *name :
+         {"sweep.json", "sweep.csv", "convergence.svg", "index.html", "reference.exr", "reference.png", "vary.json"})
+        own.push_back(folder / name);
+    prepare_json(o.json, own);
     if (varied)
         return sweep_values(o, folder);
     SweepRecord record;

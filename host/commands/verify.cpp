@@ -127,13 +127,15 @@ std::vector<StrategyRender> render_all(const Options &o, const std::vector<Named
     return renders;
 }
 
+constexpr const char *evidence_report = "verify.json"; // in the folder
+
 void leave_evidence(const std::filesystem::path &folder, const Agreement &agreement,
                     const std::vector<StrategyRender> &renders, const nlohmann::json &report) {
     const PairTest &worst = agreement.worst();
     write_evidence(folder, renders[worst.a].image, renders[worst.b].image, worst.test);
     for (size_t i = 0; i < renders.size(); i++)
         write_exr(renders[i].image, folder / fmt::format("strategy_{}.exr", i + 1));
-    write_safely(folder / "verify.json", dump(report, 2) + "\n");
+    write_safely(folder / evidence_report, dump(report, 2) + "\n");
     print("evidence: {} (image: strategy {}, reference: strategy {})\n", folder.string(), worst.a + 1, worst.b + 1);
 }
 
@@ -219,11 +221,15 @@ int run(const Options &o) {
     const std::filesystem::path folder = o.out.empty() ? "verify_" + o.scene.file.stem().string() : o.out;
     if (!std::filesystem::is_directory(folder))
         check_writable(folder);
-    prepare_json(o.json);
-    if (!o.vary.empty())
+    const std::filesystem::path own = folder / evidence_report;
+    if (!o.vary.empty()) {
+        prepare_json(o.json, {own});
         return verify_values(o, folder);
+    }
+    SceneDescription scene = load_scene(o.scene);
+    prepare_json(o.json, {own});
     nlohmann::json report;
-    const int code = verify(o, load_scene(o.scene), folder, clock, report);
+    const int code = verify(o, std::move(scene), folder, clock, report);
     if (!report.is_null()) // null: interrupted
         write_json(o.json, "verify", report);
     return code;

@@ -1,4 +1,4 @@
-// Queries of drivers. Each driver is asked in a process of its own, as it may crash or hang.
+// Queries of drivers. Each driver is asked in a process of its own, as it may crash, hang or print.
 #pragma once
 
 #include "device/context.h"
@@ -8,8 +8,9 @@
 namespace opal {
 
 struct Driver {
-    std::string name;    // its .icd file or, without one, its library; empty: whatever the loader finds
-    std::string library; // as dlopen takes it; empty where the .icd file names none
+    std::string name;      // its .icd file or, without one, its library; empty: whatever the loader finds
+    std::string library;   // as dlopen takes it; empty where the .icd file names none
+    std::string problem{}; // why it names none
 };
 
 // The drivers that OpenCL loaders would load, in this order: the libraries in $OCL_ICD_FILENAMES (Khronos's loader);
@@ -22,11 +23,13 @@ std::string loader_path();
 
 // The devices of all drivers, each asked by `opal probe-platform LIBRARY`, all at the same time. A driver that crashes
 // or takes more than time_limit seconds gives the devices that it had listed, and one with `problem`. A device that was
-// found under two names is listed once.
-std::vector<DeviceInfo> probe_drivers(const std::vector<Driver> &drivers, double time_limit);
+// found under two names is listed once. ask_all: false passes over a driver that did not answer within the last hour,
+// with a problem that says so.
+std::vector<DeviceInfo> probe_drivers(const std::vector<Driver> &drivers, double time_limit, bool ask_all = true);
 
-// Loads the driver into this process and prints a line for each device (the command probe-platform).
-void print_probe(const std::string &library);
+// Loads the driver into this process and answers a line for each device (the command probe-platform). Ends the process
+// if the answer goes to the process that started it.
+void answer_probe(const std::string &library);
 
 // Sets the binary to start, by default that of this process. Tests set it, as they are not `opal`.
 void set_probe_binary(const std::filesystem::path &binary);

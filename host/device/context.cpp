@@ -2,6 +2,7 @@
 
 #include "device/ask_driver.h"
 #include "device/load_driver.h"
+#include "device/work_folder.h"
 
 #include <fmt/format.h>
 
@@ -78,8 +79,8 @@ std::optional<std::string> match(const DeviceInfo &device, const std::string &wa
 
 } // namespace
 
-std::vector<DeviceInfo> list_devices(double time_limit) {
-    std::vector<DeviceInfo> devices = probe_drivers(find_drivers(), time_limit);
+std::vector<DeviceInfo> list_devices(double time_limit, bool ask_all) {
+    std::vector<DeviceInfo> devices = probe_drivers(find_drivers(), time_limit, ask_all);
     for (size_t i = 0; i < devices.size(); ++i)
         devices[i].index = static_cast<int>(i);
     return devices;
@@ -146,6 +147,8 @@ cl::Device part_of(cl::Device &device, unsigned units) {
 
 Device open_device(const DeviceInfo &info) {
     return with_device(info, [&] {
+        const DriverScope scope;
+        const PoclCacheVariable cache;
         std::optional<cl::Device> found;
         for_each_device(info.library, [&](const DeviceInfo &seen, const cl::Device &device) {
             if (seen.platform_place == info.platform_place && seen.device_place == info.device_place &&

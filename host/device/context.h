@@ -28,8 +28,9 @@ struct DeviceInfo {
 inline size_t group_size(const DeviceInfo &info) { return info.type == "gpu" ? 64 : 1; }
 
 // All devices. Every driver is asked in a process of its own (device/ask_driver.h), all at once: one that crashes or
-// hangs costs one line of the list. time_limit: seconds for each.
-std::vector<DeviceInfo> list_devices(double time_limit = 20);
+// hangs costs one line of the list, and a warning if it hangs. time_limit: seconds for all. ask_all: false passes over
+// those that hung within the last hour.
+std::vector<DeviceInfo> list_devices(double time_limit = 20, bool ask_all = false);
 
 // The device `render` takes: `wanted` is an index, "cpu", "gpu" or part of a name; empty: the default, with the reason.
 struct DevicePick {

@@ -12,12 +12,20 @@
 
 namespace opal {
 
+class CachedProgram;
+
+struct BuiltProgram {
+    std::string key; // flags and text
+    cl::Program program;
+    std::shared_ptr<CachedProgram> file; // in the cache of kernels; null: it is not to be kept
+};
+
 struct DeviceHandles {
     cl::Device device;
     cl::Context context;
     cl::CommandQueue queue; // in order, profiling on
-    // The programs built last, by flags and text, the latest first: strategies that share one do not build it again.
-    mutable std::vector<std::pair<std::string, cl::Program>> programs = {};
+    // The programs built last, the latest first: strategies that share one do not build it again.
+    mutable std::vector<BuiltProgram> programs = {};
 };
 
 // "CL_OUT_OF_RESOURCES" for -5; "OpenCL error -9999" for what OpenCL 1.2 does not name.

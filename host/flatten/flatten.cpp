@@ -1,4 +1,5 @@
 #include "base/error.h"
+#include "base/memory.h"
 #include "flatten/camera.h"
 #include "flatten/distribution.h"
 #include "flatten/emitter_kinds.h"
@@ -26,11 +27,13 @@ int filter_reach(const Filter &filter, const Crop &window) {
         std::ceil(std::clamp<double>(filter_extent(filter) - 0.5, 0, std::max(window.of_width, window.of_height))));
 }
 
-// The crop, and around it the pixels within reach of the filter, as far as the image goes.
-PixelWindow film_window(const Crop &crop, int reach) {
-    const int left = std::max(0, crop.x - reach), top = std::max(0, crop.y - reach);
-    const int right = std::min(crop.of_width, crop.x + crop.width + reach),
-              bottom = std::min(crop.of_height, crop.y + crop.height + reach);
+// The crop, and around it the pixels within reach of the filter, as far as the image goes. Sums of the largest sizes
+// take more than 32 bits.
+PixelWindow film_window(const Crop &crop, std::int64_t reach) {
+    const std::int64_t left = std::max<std::int64_t>(0, crop.x - reach),
+                       top = std::max<std::int64_t>(0, crop.y - reach);
+    const std::int64_t right = std::min<std::int64_t>(crop.of_width, reach + crop.x + crop.width),
+                       bottom = std::min<std::int64_t>(crop.of_height, reach + crop.y + crop.height);
     return {uint(left), uint(top), uint(right - left), uint(bottom - top)};
 }
 
@@ -154,6 +157,14 @@ void build_acceleration(TriangleSoup &soup, const std::optional<std::vector<Poin
 
 FlatScene flatten(const SceneDescription &description, int lanes, bool with_face_list,
                   const std::function<void(uint)> &on_gathered) {
+    double triangles = 0;
+    for (const Mesh &mesh : description.meshes)
+        if (const auto *shape = std::get_if<TriangleMesh>(&mesh.shape))
+            triangles += double(shape->triangles.size());
+    constexpr double tree_bytes_a_triangle = 60, tree_reserve_a_triangle = 170; // measured, beside the description
+    check_memory(tree_bytes_a_triangle * triangles, tree_reserve_a_triangle * triangles,
+                 fmt::format("the tree of {} triangles", triangles));
+
     FlatScene scene;
     const Extent extent = extent_of(description);
     const Flattening flattening = find_flattening(extent);

@@ -90,6 +90,7 @@ Planes KernelProbe::run(const char *name, bool with_scene, size_t planes, const 
         (kernel.setArg(place++, arguments), ...);
         kernel.setArg(place++, buffer);
         kernel.setArg(place + 1, cl_uint(out.stride));
+        const LaunchScope launching(device_, kernel);
         const cl::NDRange local(group_size(device_.info));
         for (size_t first = 0; first < out.stride; first += items_a_launch * size_t(lanes_)) {
             kernel.setArg(place, cl_uint(first));

@@ -252,7 +252,7 @@ std::string wrong_kind_text(const std::filesystem::path &file, const FileKindRow
 }
 
 std::string read_text_file(const std::filesystem::path &file, FileKind wanted, FileHashes *hashes) {
-    std::string text = read_file(file);
+    std::string text = read_file(file, wanted == FileKind::scene ? Pipes::read : Pipes::refused);
     if (hashes)
         hashes->add(text);
     const FileKindRow found = kind_of(text);

@@ -188,7 +188,7 @@ void ObjReader::add_normal() {
         return;
     const Vec3 n = to_world_.normal({x, y, z});
     const double size = length(n);
-    normals_.push_back(size > 0 && std::isfinite(size) ? n * (1 / size) : Vec3{});
+    normals_.push_back(std::isnormal(size) ? n * (1 / size) : Vec3{});
 }
 
 void ObjReader::add_uv() {

@@ -3,6 +3,7 @@
 #include "base/command_line.h"
 #include "base/json.h"
 #include "base/log.h"
+#include "base/printable.h"
 #include "base/values.h"
 #include "image/metrics.h"
 #include "scene/options.h"
@@ -27,7 +28,7 @@ double samples_per_second(const FilmStatistics &s, const RenderSeconds &seconds)
 // A number as a number where the attribute holds it: a seed of more than 31 bits stays exact as text.
 Attribute attribute_of(const json &value) {
     if (value.is_string())
-        return value.get<std::string>();
+        return as_utf8(value.get_ref<const std::string &>());
     if (value.is_number_float())
         return value.get<float>();
     if (value.is_number_integer() && std::in_range<int>(value.get<long long>()))
@@ -211,7 +212,7 @@ void add_metadata(Image &image, const json &report, const std::string &command_l
     for (const auto &[key, value] : report.items())
         if (key != "crop") // write_exr notes Image::crop
             image.metadata["opal." + key] = attribute_of(value);
-    image.metadata["opal.command_line"] = command_line;
+    image.metadata["opal.command_line"] = as_utf8(command_line);
 }
 
 } // namespace opal

@@ -46,6 +46,7 @@ double wrong_layouts(const Device &device, const cl::Program &program) {
     with_device(device.info, [&] {
         cl::Kernel kernel(program, "layout");
         kernel.setArg(0, out);
+        const LaunchScope launching(device, kernel);
         device.handles->queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(1), cl::NDRange(1));
         return device.handles->queue.finish();
     });
@@ -82,6 +83,7 @@ Findings math_errors(const Device &device, const cl::Program &program, MathMode 
         kernel.setArg(0, in);
         kernel.setArg(1, cl_uint(math_count));
         kernel.setArg(2, out);
+        const LaunchScope launching(device, kernel);
         device.handles->queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(math_count),
                                                    cl::NDRange(group_size(device.info)));
         return device.handles->queue.finish();

@@ -1,5 +1,6 @@
 // Finding devices: a driver that crashes, hangs or has no device loses its own line of the list and no other, and
 // the choice of a device is explained.
+#include "base/log.h"
 #include "device/ask_driver.h"
 #include "device/opencl.h"
 #include "support/device.h"
@@ -9,6 +10,8 @@
 
 #include <cstdlib>
 
+#include <sys/stat.h>
+
 using namespace opal;
 using namespace opal::test;
 
@@ -17,7 +20,8 @@ namespace {
 // A driver whose first entry point runs `body` (C). Loaders call it before anything else.
 Driver make_driver(const ScratchFolder &folder, const std::string &name, const std::string &body) {
     const std::filesystem::path source =
-        folder.write(name + ".c", "#include <stdio.h>\n#include <stdlib.h>\n#include <unistd.h>\n"
+        folder.write(name + ".c", "#define _GNU_SOURCE\n#include <dlfcn.h>\n#include <stdio.h>\n"
+                                  "#include <stdlib.h>\n#include <unistd.h>\n"
                                   "void *clGetExtensionFunctionAddress(const char *name) {\n    (void)name;\n    " +
                                       body + "\n    return 0;\n}\n");
     const std::string library = folder / ("lib" + name + ".so");
@@ -194,6 +198,81 @@ TEST_CASE("Without any driver the message says what to install", "[devices]") {
     const Outcome outcome = devices_of(folder.path());
     CHECK(outcome.exit_code == 1);
     CHECK_THAT(outcome.err, Catch::StartsWith("error: no usable OpenCL device") && Catch::Contains("pocl-opencl-icd"));
+}
+
+TEST_CASE("A driver that prints hides no device and is not mixed with results", "[devices]") {
+    const Driver good = good_driver();
+    const std::string real = std::filesystem::canonical(good.library).string();
+    const ScratchFolder folder;
+    // It prints at each load and call, without line ends, as much as it likes, and what looks like an answer.
+    const std::string noise = R"(printf("opal-device {not JSON\n{\"name\":1}\nloading... "); fflush(stdout);
+    for (int i = 0; i < 300000; i++) printf("noise ");)";
+    const Driver noisy = make_driver(folder, "noisy", noise + R"(
+    void *real = dlopen(")" + real + R"(", RTLD_NOW);
+    void *(*find)(const char *) = (void *(*)(const char *))dlsym(real, "clGetExtensionFunctionAddress");
+    printf("found "); return find(name);)");
+    const std::vector<DeviceInfo> own = probe_drivers({good}, 60), found = probe_drivers({noisy}, 60);
+    REQUIRE(found.size() == own.size());
+    CHECK(found[0].name == own[0].name);
+    CHECK(found[0].problem == "");
+
+    CHECK(nlohmann::json::parse(devices_of(folder / "vendors", "--json -").out)["devices"].size() == own.size());
+    const Outcome rendered = run_shell("OCL_ICD_FILENAMES= OCL_ICD_VENDORS=" + (folder / "vendors").string() + " " +
+                                       OPAL_BINARY + " render " OPAL_SOURCE_DIR "/scenes/cbox_mis.xml --width 8 " +
+                                       "--height 8 --spp 1 --quiet --json - -o " + (folder / "out.exr").string());
+    CHECK(rendered.exit_code == 0);
+    CHECK(nlohmann::json::accept(rendered.out));
+}
+
+TEST_CASE("An .icd file that cannot be read is named, with the reason", "[devices]") {
+    const ScratchFolder folder;
+    std::filesystem::create_symlink(folder / "nothing", folder / "dangling.icd");
+    std::filesystem::create_directory(folder / "folder.icd");
+    REQUIRE(mkfifo((folder / "pipe.icd").c_str(), 0600) == 0);
+    folder.write("relative.icd", "./libours.so\n");
+    const Outcome outcome = devices_of(folder.path());
+    CHECK(outcome.exit_code == 1);
+    CHECK_THAT(outcome.out, Catch::Contains("dangling.icd: cannot read: No such file or directory") &&
+                                Catch::Contains("folder.icd: is no regular file") &&
+                                Catch::Contains("pipe.icd: is no regular file") &&
+                                Catch::Contains("relative.icd: cannot be loaded (./libours.so: "));
+    CHECK_THAT(outcome.err, Catch::Contains("dangling.icd: cannot read"));
+}
+
+TEST_CASE("A driver that hangs is not asked again within the hour, unless no other has a device", "[devices]") {
+    set_probe_binary(OPAL_BINARY);
+    const ScratchFolder folder;
+    const std::string asked = folder / "asked";
+    const Driver hung = make_driver(
+        folder, "hung", "FILE *out = fopen(\"" + asked + "\", \"a\"); fputc('x', out); fclose(out); sleep(60);");
+    const Driver good = good_driver();
+    const auto problem = [&](const std::vector<Driver> &drivers, bool ask_all) {
+        return probe_drivers(drivers, 2, ask_all).at(0).problem;
+    };
+    const auto times = [&] { return read_text(asked).size(); };
+    forget_warnings();
+    CHECK(problem({hung, good}, false) == "did not answer within 2 s");
+    CHECK(times() == 1);
+    CHECK_THAT(problem({hung, good}, false), Catch::Contains("is not asked again"));
+    CHECK(times() == 1);
+    REQUIRE(warnings().size() == 2);
+    CHECK_THAT(warnings()[1], Catch::StartsWith(hung.name + ": "));
+    CHECK(problem({hung}, false) == "did not answer within 2 s");
+    CHECK(problem({hung, good}, true) == "did not answer within 2 s");
+    CHECK(times() == 3);
+    forget_warnings();
+}
+
+TEST_CASE("A process that asks a driver ends with its parent", "[devices]") {
+    const ScratchFolder folder;
+    const std::string asker = folder / "asker";
+    make_driver(folder, "slow",
+                "FILE *out = fopen(\"" + asker + "\", \"w\"); fprintf(out, \"%d\", getpid()); fclose(out); sleep(60);");
+    const Outcome outcome =
+        run_shell("OCL_ICD_FILENAMES= OCL_ICD_VENDORS=" + (folder / "vendors").string() + " " + OPAL_BINARY +
+                  " devices & opal=$!; until [ -s " + asker + " ]; do sleep 0.1; done; kill -9 $opal; wait $opal; " +
+                  "for i in 1 2 3 4 5 6 7 8 9 10; do kill -0 $(cat " + asker + ") || exit 7; sleep 0.2; done");
+    CHECK(outcome.exit_code == 7);
 }
 
 TEST_CASE("The default is the first usable GPU, else a CPU, else a software rasteriser", "[devices]") {

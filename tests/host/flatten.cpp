@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 
 using namespace opal;
 
@@ -91,6 +92,18 @@ TEST_CASE("the camera's columns, film and clips", "[flatten]") {
     for (int i = 0; i < 3; i++) {
         const double d = record.left[i] * x + record.up[i] * y + record.forward[i];
         CHECK(record.near_clip * d == Approx(world[i] / 4));
+    }
+}
+
+TEST_CASE("the film is part of the image for the largest images and filters", "[flatten]") {
+    SceneDescription scene;
+    const int most = std::numeric_limits<int>::max();
+    scene.camera.width = scene.camera.height = most;
+    for (const double radius : {2.0, 1e38}) {
+        CAPTURE(radius);
+        scene.camera.filter = {FILTER_gaussian, radius, 0.5, 0, 0, true};
+        const PixelWindow film = flatten(scene, 1).settings.film;
+        CHECK((film.left == 0 && film.top == 0 && film.width == uint(most) && film.height == uint(most)));
     }
 }
 

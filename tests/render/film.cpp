@@ -71,11 +71,10 @@ TEST_CASE("The last pixels of the largest image are gathered and cleared", "[fil
 
 TEST_CASE("Scenes share the program of the film", "[film]") {
     const ScratchFolder folder;
-    // PoCL keeps each program in a folder of two levels, which it names by the program's text.
     const auto programs = [&] {
         size_t count = 0;
-        for (const auto &entry : std::filesystem::recursive_directory_iterator(folder / "cache"))
-            count += entry.is_regular_file() && entry.path().filename() == "program.bc";
+        for (const auto &entry : std::filesystem::directory_iterator(folder / "cache"))
+            count += entry.path().extension() == ".kernels";
         return count;
     };
     std::filesystem::create_directory(folder / "cache");

@@ -61,7 +61,7 @@ TEST_CASE("After opal cache --warm no scene or strategy compiles a kernel for fe
         const Outcome outcome = run_shell(cache + "cache --device cpu --json - " + flags);
         INFO(outcome.err);
         REQUIRE(outcome.exit_code == 0);
-        return nlohmann::json::parse(outcome.out)["kernels"].get<int>();
+        return nlohmann::json::parse(outcome.out)["bytes"].get<int>();
     };
     CHECK(kernels("") == 0);
     const int warm = kernels("--warm");

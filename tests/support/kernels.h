@@ -46,6 +46,7 @@ void run(const cl::Program &program, const std::string &name, size_t work_items,
                 kernel.setArg(place++, argument);
         };
         (set(arguments), ...);
+        const LaunchScope launching(device(), kernel);
         device().handles->queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(work_items), cl::NullRange);
         return device().handles->queue.finish();
     });

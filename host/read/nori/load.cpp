@@ -1,5 +1,6 @@
 #include "read/nori/load.h"
 
+#include "base/file_use.h"
 #include "base/log.h"
 #include "read/nori/names.h"
 #include "read/nori/parsers.h"
@@ -63,7 +64,9 @@ void warn_if_black(const SceneDescription &scene, const XmlNode &node) {
 } // namespace
 
 ParseContext context_for(const std::filesystem::path &file, const LoadOptions &options, Mistakes &mistakes) {
-    ParseContext context{file.parent_path(), options.lenient, &mistakes};
+    // Names in a scene that comes by /dev/stdin are of the current folder.
+    ParseContext context{descriptor_of(file) ? std::filesystem::path() : file.parent_path(), options.lenient,
+                         &mistakes};
     if (options.dialect != "auto")
         context.dialect = Dialect(&find_row(dialects(), "dialect", options.dialect) - dialects().data());
     return context;

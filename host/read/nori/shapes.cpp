@@ -46,6 +46,8 @@ std::vector<Mesh> parse_obj(Properties &properties, MeshStart start) {
         start.mesh.shape = std::move(obj.mesh);
     } catch (const Error &error) { // the place in the OBJ file comes first
         throw Error(std::string(error.what()) + " (the mesh at " + start.mesh.place.text() + ")");
+    } catch (const std::bad_alloc &) {
+        throw Error(start.mesh.place.text() + ": out of memory while " + file.string() + " is read");
     }
     return {std::move(start.mesh)};
 }
