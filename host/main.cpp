@@ -5,6 +5,7 @@
 #include "base/large_vector.h"
 #include "base/log.h"
 #include "base/process.h"
+#include "base/signals.h"
 #include "commands/commands.h"
 #include "commands/help.h"
 #include "commands/parse.h"
@@ -23,15 +24,18 @@ namespace {
 // `opal SCENE.xml ...` is `opal render SCENE.xml ...`, also with flags before the scene.
 std::vector<std::string> with_command(const std::vector<Command> &commands, std::vector<std::string> words) {
     const auto names_scene = [](const std::string &word) {
-        return std::filesystem::path(word).extension() == ".xml" || std::filesystem::is_regular_file(word);
+        std::error_code ignored;
+        const std::filesystem::file_status status = std::filesystem::status(word, ignored); // a file or a pipe
+        return std::filesystem::path(word).extension() == ".xml" ||
+               (std::filesystem::exists(status) && !std::filesystem::is_directory(status));
     };
     const auto names_file = [](const std::string &word) { // a scene or mesh, perhaps misspelt: reading it says so
         return !word.starts_with('-') && std::filesystem::path(word).has_extension();
     };
     const bool is_command =
         std::any_of(commands.begin(), commands.end(), [&](const Command &c) { return words[0] == c.name; });
-    const bool is_flag = words[0].starts_with('-');
-    if (!is_command && (names_file(words[0]) || names_scene(words[0]) ||
+    const bool is_stdin = words[0] == "-", is_flag = !is_stdin && words[0].starts_with('-');
+    if (!is_command && (is_stdin || names_file(words[0]) || names_scene(words[0]) ||
                         (is_flag && std::any_of(words.begin(), words.end(), names_scene))))
         words.insert(words.begin(), "render");
     return words;
@@ -68,6 +72,9 @@ int main(int argc, char **argv) {
     } catch (const opal::UsageError &error) {
         opal::tell_error(error);
         code = opal::exit_usage;
+    } catch (const opal::InterruptedWait &error) {
+        opal::tell_error(error);
+        code = opal::interrupt_exit_code();
     } catch (const std::exception &error) {
         opal::tell_error(error);
     }

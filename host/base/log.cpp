@@ -1,6 +1,7 @@
 #include "base/log.h"
 
 #include "base/error.h"
+#include "base/printable.h"
 
 #include <cerrno>
 #include <csignal>
@@ -39,11 +40,16 @@ void write(const std::string &text, std::FILE *stream) {
         first_output_error = errno ? errno : EIO;
 }
 
-void say(const char *prefix, const char *line) {
+// All messages pass here: none steers the terminal.
+void say(const char *prefix, const std::string &text) {
+    const std::string shown = printable(text);
     const std::lock_guard lock(streams);
     clear_bar();
-    std::fprintf(stderr, "%s%s\n", prefix, line);
+    std::fprintf(stderr, "%s%s\n", prefix, shown.c_str());
 }
+
+// A message about files, scenes and values.
+std::string sentence(const std::string &text) { return in_one_line(shortened_message(text)); }
 
 } // namespace
 
@@ -52,33 +58,34 @@ bool is_quiet() { return quiet_chosen; }
 
 void info(const std::string &line) {
     if (!quiet_chosen)
-        say("", line.c_str());
+        say("", shortened_message(line));
 }
 
 void set_verbose(bool verbose) { verbose_chosen = verbose; }
 
 void detail(const std::string &text) {
     if (verbose_chosen)
-        say("", text.c_str());
+        say("", text);
 }
 
 void note(const std::string &line) {
     if (!quiet_chosen)
-        say("note: ", line.c_str());
+        say("note: ", sentence(line));
 }
 
 void warn(const std::string &line) {
     constexpr size_t most_warnings = 1000; // a file may ask for a million; each stands in the reports, too
     if (kept_warnings.size() > most_warnings)
         return;
-    kept_warnings.push_back(kept_warnings.size() < most_warnings ? line : "more warnings follow, which are not told");
-    say("warning: ", kept_warnings.back().c_str());
+    kept_warnings.push_back(kept_warnings.size() < most_warnings ? shortened_message(line)
+                                                                 : "more warnings follow, which are not told");
+    say("warning: ", sentence(kept_warnings.back()));
 }
 
 const std::vector<std::string> &warnings() { return kept_warnings; }
 void forget_warnings() { kept_warnings.clear(); }
 
-void tell_error(const char *line) { say("error: ", line); }
+void tell_error(const char *line) { say("error: ", sentence(line)); }
 
 void tell_error(const std::exception &error) {
     if (const auto *list = dynamic_cast<const ErrorList *>(&error))
@@ -100,7 +107,7 @@ void free_stdout() { results = stderr; }
 
 void print_data(const std::string &text) { write(text, stdout); }
 
-void print_text(const std::string &text) { write(text, results); }
+void print_text(const std::string &text) { write(printable(text), results); }
 
 int output_error() { return first_output_error; }
 

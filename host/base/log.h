@@ -1,5 +1,6 @@
 // Printing: results go to stdout, messages to stderr, a line each. Nothing here throws: a full disk or a closed
-// terminal costs the message, never the render. Warnings are kept for the JSON reports and the tests.
+// terminal costs the message, never the render. No character of a name or value steers the terminal, and long values
+// are shortened (base/printable.h). Warnings are kept for the JSON reports and the tests.
 #pragma once
 
 #include <fmt/core.h>
@@ -31,7 +32,7 @@ template <class... Arguments> void print(fmt::format_string<Arguments...> text, 
     print_text(fmt::format(text, std::forward<Arguments>(arguments)...));
 }
 void free_stdout();                       // from now on results go to stderr, and print_data alone to stdout
-void print_data(const std::string &text); // to stdout in any case: a file that was asked for as "-"
+void print_data(const std::string &text); // to stdout in any case, as it is: a file that was asked for as "-"
 int output_error();                       // errno of the first result that could not be written to stdout; 0: none
 
 // Call first in main. From then on a failed write does not end the process by SIGPIPE or SIGXFSZ. A closed stdin,

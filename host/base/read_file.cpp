@@ -1,15 +1,22 @@
 #include "base/read_file.h"
 
 #include "base/error.h"
+#include "base/file_use.h"
+#include "base/memory.h"
 
 #include <fmt/format.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <memory>
+#include <map>
+#include <mutex>
 #include <new>
+#include <optional>
 #include <stdexcept>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace opal {
 
@@ -17,38 +24,115 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// C's streams: C++'s do not tell a failed read from the end of a file.
-std::string read_stream(std::FILE *stream, const fs::path &file) {
-    std::error_code unknown; // set for pipes and devices, which have no size and are read to their end
-    const auto size = fs::file_size(file, unknown);
-    std::string bytes(unknown ? 65536 : size + 1,
-                      '\0'); // one byte more than the size, so that the end is seen without growing
+constexpr size_t most_of_pipe = size_t(1) << 30;
+
+// A descriptor, or nothing where it is negative.
+class Descriptor {
+public:
+    explicit Descriptor(int number) : number_(number) {}
+    ~Descriptor() {
+        if (number_ >= 0)
+            close(number_);
+    }
+    Descriptor(const Descriptor &) = delete;
+    Descriptor &operator=(const Descriptor &) = delete;
+    int number() const { return number_; }
+
+private:
+    const int number_;
+};
+
+// A named descriptor is duplicated: opening it anew fails for a socket, and where the user may not open the file.
+int open_to_read(const fs::path &file, std::optional<int> named, Pipes pipes) {
+    for (;;) {
+        // Without O_NONBLOCK a FIFO that nobody writes to is waited for.
+        const int number =
+            named ? fcntl(*named, F_DUPFD_CLOEXEC, 0)
+                  : open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | (pipes == Pipes::refused ? O_NONBLOCK : 0));
+        if (number >= 0 || errno != EINTR)
+            return number;
+    }
+}
+
+// Why a file of this kind is not read; empty: it is.
+std::string refusal(const struct stat &status, bool is_descriptor, Pipes pipes) {
+    const std::string wanted = ", not a file";
+    if (S_ISDIR(status.st_mode))
+        return "is a folder" + wanted;
+    if (S_ISBLK(status.st_mode) || (S_ISCHR(status.st_mode) && !(is_descriptor && pipes == Pipes::read)))
+        return "is a device" + wanted;
+    if (S_ISSOCK(status.st_mode) && !is_descriptor)
+        return "is a socket" + wanted;
+    if (!S_ISREG(status.st_mode) && pipes == Pipes::refused)
+        return "is a pipe" + wanted;
+    return "";
+}
+
+std::string read_all(const Descriptor &descriptor, const struct stat &status, const fs::path &file) {
+    const bool regular = S_ISREG(status.st_mode);
+    const size_t size = regular ? size_t(status.st_size) : 0;
+    check_memory(double(size), file.string() + ": cannot read");
+    // One byte more than the size, so that the end is seen without growing. Files of /proc have the size 0.
+    std::string bytes(size ? size + 1 : 65536, '\0');
     size_t count = 0;
     for (;;) {
-        count += std::fread(bytes.data() + count, 1, bytes.size() - count, stream);
-        if (std::ferror(stream))
+        const ssize_t more = read(descriptor.number(), bytes.data() + count, bytes.size() - count);
+        if (more < 0 && errno == EINTR)
+            continue;
+        if (more < 0)
             cannot_read(file, errno);
-        if (count < bytes.size())
+        if (more == 0)
             break;
-        bytes.resize(2 * count);
+        count += size_t(more);
+        if (!regular && count > most_of_pipe)
+            throw Error(fmt::format("{}: cannot read: more than 1 GiB comes from it; a file may be larger, a pipe not",
+                                    file.string()));
+        if (count == bytes.size())
+            bytes.resize(2 * count);
     }
-    if (!unknown && count < size)
+    if (count < size)
         throw Error(fmt::format("{}: cannot read: it ended after {} of {} bytes", file.string(), count, size));
     bytes.resize(count);
     return bytes;
 }
 
+// Throws where a file of this kind is not read.
+void check_kind(const fs::path &file, const struct stat &status, std::optional<int> named, Pipes pipes) {
+    const bool may_pass = named && (!S_ISCHR(status.st_mode) || isatty(*named));
+    if (const std::string why = refusal(status, may_pass, pipes); !why.empty())
+        throw Error(file.string() + ": " + why);
+}
+
+std::string read_new(const fs::path &file, Pipes pipes, bool &passes_by) {
+    const std::optional<int> named = descriptor_of(file);
+    struct stat status {};
+    if ((named ? fstat(*named, &status) : stat(file.c_str(), &status)) != 0)
+        cannot_read(file, errno);
+    check_kind(file, status, named, pipes); // before it is opened, which does something to some devices
+    note_input(file);
+    const Descriptor descriptor(open_to_read(file, named, pipes));
+    if (descriptor.number() < 0 || fstat(descriptor.number(), &status) != 0)
+        cannot_read(file, errno);
+    check_kind(file, status, named, pipes);
+    passes_by = named || !S_ISREG(status.st_mode);
+    return read_all(descriptor, status, file);
+}
+
+std::mutex mutex;
+std::map<fs::path, std::string> passed_by; // what came through pipes
+
 } // namespace
 
-std::string read_file(const fs::path &file) {
-    std::error_code ignored;
-    if (fs::is_directory(file, ignored))
-        throw Error(file.string() + ": is a folder, not a file");
-    const std::unique_ptr<std::FILE, int (*)(std::FILE *)> stream(std::fopen(file.c_str(), "rb"), std::fclose);
-    if (!stream)
-        cannot_read(file, errno);
+std::string read_file(const fs::path &file, Pipes pipes) {
+    const std::lock_guard lock(mutex);
+    if (const auto kept = passed_by.find(file); kept != passed_by.end() && pipes == Pipes::read)
+        return kept->second;
     try {
-        return read_stream(stream.get(), file);
+        bool passes_by = false;
+        std::string bytes = read_new(file, pipes, passes_by);
+        if (passes_by)
+            passed_by[file] = bytes;
+        return bytes;
     } catch (const std::bad_alloc &) {
         cannot_read(file, ENOMEM);
     } catch (const std::length_error &) { // more than a string can hold

@@ -1,5 +1,7 @@
 #include "base/table.h"
 
+#include "base/printable.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -77,6 +79,9 @@ std::string nearest_name(std::string_view name, const std::vector<std::string> &
     std::string nearest;
     size_t least = std::max<size_t>(name.size() / 3, 1) + 1;
     for (const std::string &candidate : known) {
+        // Each letter that one has more costs an edit: a name of a megabyte is compared with none.
+        if (std::max(name.size(), candidate.size()) - std::min(name.size(), candidate.size()) >= least)
+            continue;
         size_t distance = edit_distance(name, candidate);
         if (distance < least && distance < candidate.size()) {
             least = distance;
@@ -93,7 +98,7 @@ std::string unknown_name(std::string_view what, std::string_view name, const std
                          const std::string &of) {
     std::string nearest = nearest_name(name, known);
     std::string hint = nearest.empty() ? "" : fmt::format("did you mean '{}'? ", nearest);
-    return fmt::format("unknown {} '{}'{}; {}available: {}", what, name, of, hint, joined(known));
+    return fmt::format("unknown {} {}{}; {}available: {}", what, quoted(name), of, hint, joined(known));
 }
 
 } // namespace opal

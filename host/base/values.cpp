@@ -1,6 +1,7 @@
 #include "base/values.h"
 
 #include "base/error.h"
+#include "base/printable.h"
 
 #include <fmt/format.h>
 
@@ -21,8 +22,6 @@ std::string_view trimmed(std::string_view text) {
     size_t first = text.find_first_not_of(blanks);
     return first == std::string_view::npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
-
-std::string quoted(std::string_view text) { return fmt::format("'{}'", text); }
 
 // std::from_chars on all of the text, after a '+' which it does not know.
 template <class T> std::errc read_all(std::string_view text, T &value) {

@@ -61,15 +61,19 @@ void check_ray_options(const RayOptions &o) {
         if (!file->empty() && o.kind.empty())
             throw UsageError(fmt::format("{} is of one kind of rays: name it with --kind; available: {}", flag,
                                          joined(names_of(ray_kinds()))));
+}
+
+void check_ray_outputs(const RayOptions &o) {
     prepare_json(o.json);
     for (const std::string *file : {&o.dump_rays, &o.dump_hits, &o.dump_triangles})
         if (!file->empty())
-            check_writable(*file);
+            check_output(*file);
 }
 
 int run_rays(const RayOptions &o) {
     check_ray_options(o);
     SceneDescription scene = load_scene(o.scene);
+    check_ray_outputs(o);
     scene.strategy[AXIS_integrator] = CHOICE_integrator_path; // for any scene: its shadow rays go to points on lights
     scene.strategy[AXIS_lighting] = CHOICE_lighting_mis;
     scene.strategy[AXIS_sampler] = CHOICE_sampler_independent;
@@ -172,8 +176,8 @@ struct RenderBenchOptions {
 };
 
 int run_renders(const RenderBenchOptions &o) {
-    prepare_json(o.json);
     const SceneDescription scene = load_scene(o.scene);
+    prepare_json(o.json);
     const KernelChoice choice = choose_kernel(o.device, scene);
     const DevicePick &pick = choice.pick;
     const BuildOptions &build = choice.build; // clang captures no structured binding before version 16

@@ -113,7 +113,8 @@ void write_map(const std::filesystem::path &exr, const Image &image, const Image
         for (Layer &layer : tile_map(*test, test->z, d.width, d.height).layers)
             d.layers.push_back({"z." + layer.name, std::move(layer.values)});
     write_exr(d, exr);
-    write_png(colours, std::filesystem::path(exr).replace_extension(".png"));
+    if (const std::filesystem::path png = png_beside(exr); !png.empty())
+        write_png(colours, png);
 }
 
 nlohmann::json json_of(const Metrics &m) {
@@ -182,13 +183,18 @@ int run(const Options &o) {
     if (!o.out.empty()) {
         if (std::filesystem::path(o.out).extension() == ".png")
             throw Error(fmt::format("--output {}: names the EXR file; the PNG goes beside it", o.out));
-        check_writable(o.out);
-        check_writable(std::filesystem::path(o.out).replace_extension(".png"));
+        check_output(o.out);
+        if (const std::filesystem::path png = png_beside(o.out); !png.empty())
+            check_output(png);
     }
     prepare_json(o.json);
     Image image = read_exr(o.image), reference = read_exr(o.reference);
     check_layers(o, image, reference);
     align(o, image, reference);
+    if (const std::string a = image.text("opal.scene_hash"), b = reference.text("opal.scene_hash");
+        !a.empty() && !b.empty() && a != b)
+        note(fmt::format("{} and {} are of different scene files, by opal.scene_hash in their headers", o.image,
+                         o.reference));
     const Crop place = image.place();
     for (const auto &[file, read] : {std::pair(o.image, &image), std::pair(o.reference, &reference)})
         if (const double empty = empty_pixels(*read))

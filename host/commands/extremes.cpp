@@ -44,7 +44,7 @@ int run(ExtremesOptions o) {
     const auto rows = chosen(o.names);
     prepare_json(o.json);
     if (!o.plot.empty())
-        check_writable(o.plot);
+        check_output(o.plot);
     if (o.quick)
         o.settings.side = o.settings.spp = 32;
     o.settings.side = o.side.value_or(o.settings.side);

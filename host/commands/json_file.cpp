@@ -1,9 +1,15 @@
 #include "commands/json_file.h"
 
 #include "base/command_line.h"
+#include "base/error.h"
+#include "base/file_use.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "image/image.h"
+
+#include <fmt/format.h>
+
+#include <unistd.h>
 
 namespace opal {
 
@@ -14,11 +20,19 @@ OptionRow json_row(std::string &file, const std::string &what) {
             .type = "FILE|-"};
 }
 
-void prepare_json(const std::string &file) {
-    if (file == "-")
+bool names_stdout(const std::string &file) { return !file.empty() && descriptor_of(path_of(file)) == STDOUT_FILENO; }
+
+std::filesystem::path path_of(const std::string &file) { return file == "-" ? "/dev/stdout" : file; }
+
+void prepare_json(const std::string &file, const std::vector<std::filesystem::path> &own) {
+    if (file.empty())
+        return;
+    for (const std::filesystem::path &other : own)
+        if (is_same_file(path_of(file), other))
+            throw UsageError(fmt::format("--json {}: the command writes this file itself, with other contents", file));
+    if (names_stdout(file))
         free_stdout();
-    else if (!file.empty())
-        check_writable(file);
+    check_output(path_of(file));
 }
 
 void write_json(const std::string &file, const std::string &command, nlohmann::json report) {
@@ -30,7 +44,7 @@ void write_json(const std::string &file, const std::string &command, nlohmann::j
     report["seconds"]["wall"] = seconds_since_start();
     report["warnings"] = warnings();
     const std::string text = dump(report, 2) + "\n";
-    if (file == "-")
+    if (names_stdout(file))
         print_data(text);
     else
         write_safely(file, text);

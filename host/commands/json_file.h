@@ -10,9 +10,14 @@ namespace opal {
 // --json FILE|-. what: "the statistics of the render".
 OptionRow json_row(std::string &file, const std::string &what);
 
+// Whether an output's name is "-", /dev/stdout, or another name of stdout.
+bool names_stdout(const std::string &file);
+// "-" as the system names it: /dev/stdout.
+std::filesystem::path path_of(const std::string &file);
+
 // Call before the work: a file that cannot be written is an error now, and for "-" stdout is kept for the JSON alone.
-// Empty: nothing is asked for.
-void prepare_json(const std::string &file);
+// Empty: nothing is asked for. own: what the command writes besides, which must be other files.
+void prepare_json(const std::string &file, const std::vector<std::filesystem::path> &own = {});
 
 // Writes the envelope and the report's keys: `opal` (version), `command` (its name), `command_line`, `seconds` (with
 // `wall`, since the process began, beside the report's own), `warnings`.

@@ -231,7 +231,7 @@ private:
             if (is_positional(row) && (is_repeatable(row) || !given_.contains(&row))) {
                 if (!given_.contains(&row))
                     begin(row, row.flags);
-                return give(row, row.flags, word);
+                return give(row, row.flags, word == "-" ? "/dev/stdin" : word);
             }
         refuse(fmt::format("'{}' is one argument too many for opal {}", word, path_));
     }

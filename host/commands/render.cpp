@@ -1,6 +1,7 @@
 // opal render: scenes to EXRs and PNGs.
 #include "base/command_line.h"
 #include "base/error.h"
+#include "base/exit_code.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/progress.h"
@@ -93,43 +94,45 @@ void warn_of_fast_functions(const Device &device, const BuildOptions &build, con
 // Where a render's image goes. Empty: not written.
 struct ImageFiles {
     std::filesystem::path exr, png;
-    bool to_stdout = false; // an EXR
-
-    std::string text() const {
-        const std::string first = to_stdout ? "an EXR to stdout" : exr.string();
-        return first + (first.empty() || png.empty() ? "" : " and ") + png.string();
-    }
+    std::string text() const { return exr.string() + (exr.empty() || png.empty() ? "" : " and ") + png.string(); }
 };
 
-bool names_folder(const std::string &out) { return out.ends_with('/') || std::filesystem::is_directory(out); }
+// What is written of an image.
+struct WrittenImage {
+    std::vector<std::string> files, errors;
+    bool interrupted = false; // while it waited for a reader
+};
+
+bool names_folder(const std::string &out) {
+    std::error_code ignored; // what is wrong with the name is told by check_output
+    return out.ends_with('/') || std::filesystem::is_directory(out, ignored);
+}
 
 // The files that -o asks for. Throws UsageError if it names no format that Opal writes.
 ImageFiles image_files(const Options &o, const std::filesystem::path &scene) {
-    if (o.out == "-")
-        return {.exr = {}, .png = {}, .to_stdout = true};
-    std::filesystem::path file = o.out;
+    std::filesystem::path file = path_of(o.out);
     if (o.out.empty() || names_folder(o.out))
         file = file / (scene.stem().string() + ".exr");
-    else if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file))
-        return {.exr = file, .png = {}}; // /dev/null: nothing can be written beside it
     std::string ending = file.extension().string();
     std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
     if (ending == ".png")
         return {.exr = {}, .png = file};
+    const std::filesystem::path beside = png_beside(file);
+    if (beside.empty()) // /dev/null, /dev/stdout
+        return {.exr = file, .png = {}};
     if (ending != ".exr")
         throw UsageError(
             fmt::format("-o {}: the ending {}; possible: FILE.exr (an EXR and a PNG beside it), FILE.png (only a "
                         "PNG), FOLDER/, - (an EXR to stdout)",
                         o.out, ending.empty() ? "is missing" : "'" + ending + "' names no format of Opal's"));
-    return {.exr = file,
-            .png = o.no_png ? std::filesystem::path() : std::filesystem::path(file).replace_extension(".png")};
+    return {.exr = file, .png = o.no_png ? std::filesystem::path() : beside};
 }
 
 // Throws UsageError if options that say what is written contradict each other.
-void check_output(const Options &o, const ImageFiles &files) {
-    if (files.to_stdout && o.json == "-")
-        throw UsageError("-o - and --json -: stdout takes one of them");
-    if (files.exr.empty() && !files.to_stdout) {
+void check_output_options(const Options &o, const ImageFiles &files) {
+    if (names_stdout(o.out) && names_stdout(o.json))
+        throw UsageError(fmt::format("-o {} and --json {}: stdout takes one of them", o.out, o.json));
+    if (files.exr.empty()) {
         if (o.no_png)
             throw UsageError(fmt::format("-o {} and --no-png: nothing would be written", o.out));
         if (!o.layers.empty())
@@ -137,6 +140,19 @@ void check_output(const Options &o, const ImageFiles &files) {
     }
     if (files.png.empty() && (o.exposure != 0 || o.tonemap != "srgb"))
         throw UsageError("--exposure and --tonemap: they shape the PNG, and none is written");
+}
+
+// Throws Error if a file of the image cannot hold its size.
+void check_image_size(const ImageFiles &files, const Crop &window, bool variance) {
+    try {
+        if (!files.png.empty())
+            check_png_size(window.width, window.height);
+    } catch (const Error &error) {
+        throw Error(
+            fmt::format("{}: {}{}", files.png.string(), error.what(), files.exr.empty() ? "" : "; give --no-png"));
+    }
+    if (!files.exr.empty())
+        check_exr_size(window.width, variance ? 6 : 3);
 }
 
 // The request of a render, checked before a device is opened.
@@ -154,7 +170,7 @@ Request prepare(const Options &o) {
     Request request;
     request.rule = stop_rule(o);
     request.files = image_files(o, o.scene.file);
-    check_output(o, request.files);
+    check_output_options(o, request.files);
     request.display = {.exposure = o.exposure, .tonemap = o.tonemap == "aces" ? Tonemap::aces : Tonemap::srgb};
     const Stopwatch load;
     SceneDescription &scene = request.scene = load_scene(o.scene);
@@ -169,7 +185,8 @@ Request prepare(const Options &o) {
         make_folder(o.out);
     for (const std::filesystem::path &file : {request.files.exr, request.files.png})
         if (!file.empty())
-            check_writable(file);
+            check_output(file);
+    check_image_size(request.files, scene.camera.window(), o.layers == "variance");
     request.load_seconds = load.seconds();
     constexpr size_t most_faces = 300'000; // 0.03 s; `opal inspect` looks at all
     for (const std::string &line : scene_warnings(scene, most_faces))
@@ -179,24 +196,42 @@ Request prepare(const Options &o) {
     return request;
 }
 
-// Writes the files side by side.
-void write_image(const Image &image, const ImageFiles &files, const Display &display) {
+// Writes one file of an image, and notes how that went.
+template <class Write> void try_to_write(WrittenImage &written, const std::filesystem::path &file, Write write) {
+    try {
+        write();
+        written.files.push_back(file.string());
+    } catch (const InterruptedWait &error) {
+        written.interrupted = true;
+        written.errors.emplace_back(error.what());
+    } catch (const std::bad_alloc &) {
+        written.errors.push_back(file.string() + ": cannot be written: out of memory on the host");
+    } catch (const std::exception &error) {
+        written.errors.emplace_back(error.what());
+    }
+}
+
+// Writes the files side by side. If one fails, the other is written all the same.
+WrittenImage write_image(const Image &image, const ImageFiles &files, const Display &display) {
     const RunningProgress progress("writing");
-    std::future<void> png;
-    const auto write = [&] { write_png(image, files.png, display); };
+    WrittenImage png, written;
+    const auto write = [&] { try_to_write(png, files.png, [&] { write_png(image, files.png, display); }); };
+    std::future<void> other;
     if (!files.png.empty()) {
         try {
-            png = std::async(std::launch::async, write);
+            other = std::async(std::launch::async, write);
         } catch (const std::system_error &) { // a limit on threads: the PNG is written after the EXR
-            png = std::async(std::launch::deferred, write);
+            other = std::async(std::launch::deferred, write);
         }
     }
-    if (files.to_stdout)
-        print_text(exr_bytes(image));
     if (!files.exr.empty())
-        write_exr(image, files.exr);
-    if (png.valid())
-        png.get(); // throws what write_png threw
+        try_to_write(written, files.exr, [&] { write_exr(image, files.exr); });
+    if (other.valid())
+        other.get();
+    written.files.insert(written.files.end(), png.files.begin(), png.files.end());
+    written.errors.insert(written.errors.end(), png.errors.begin(), png.errors.end());
+    written.interrupted |= png.interrupted;
+    return written;
 }
 
 // Writes the image with the report in its header, and tells the result. Returns the exit code.
@@ -205,7 +240,12 @@ int report(const Request &request, RenderedFilm &rendered, const RenderReport &r
     for (const std::string &line : film_warnings(render))
         warn(line);
     Image image = take_image(rendered.film, variance);
+    const ImageFault fault = find_fault(image, render.statistics);
+    if (fault)
+        warn(fault.text());
     nlohmann::json json = render.json();
+    json["invalid_pixels"] = fault.invalid_pixels;
+    json["samples_lost"] = fault.samples_lost;
     const StopReport stop = report_stop(request.rule, rendered.stopped, render);
     if (choice)
         json["auto"] = choice->json();
@@ -216,9 +256,10 @@ int report(const Request &request, RenderedFilm &rendered, const RenderReport &r
         json["asked_spp"] = rendered.stopped.spp;
     add_metadata(image, json, command_line());
     const Stopwatch write;
-    write_image(image, request.files, request.display);
+    WrittenImage written = write_image(image, request.files, request.display);
     json["seconds"]["write"] = write.seconds();
-    write_json(request.json, "render", json);
+    const std::vector<std::string> images = written.files;
+    try_to_write(written, request.json, [&] { write_json(request.json, "render", json); });
 
     info(render.text());
     if (request.rule.given()) {
@@ -226,9 +267,16 @@ int report(const Request &request, RenderedFilm &rendered, const RenderReport &r
         if (!stop.met)
             warn(stop.warning());
     }
-    info("wrote   " + request.files.text());
+    if (!images.empty())
+        info(fmt::format("wrote   {}", fmt::join(images, " and ")));
+    for (const std::string &line : written.errors)
+        tell_error(line.c_str());
+    if (written.interrupted)
+        return interrupt_exit_code();
+    if (!written.errors.empty())
+        return exit_failed;
     if (rendered.stopped.complete)
-        return 0;
+        return fault ? exit_failed : exit_done;
     warn(fmt::format("interrupted: the image holds {:.4g} of {} samples a pixel", render.spp(), rendered.stopped.spp));
     return interrupt_exit_code();
 }
@@ -296,7 +344,9 @@ int render_scenes(Options o) {
         forget_warnings();
         o.scene.file = scene;
         try {
-            if (const int code = render_scene(o))
+            if (const int code = render_scene(o); code == exit_failed)
+                failed.push_back(scene);
+            else if (code != exit_done)
                 return code; // interrupted
         } catch (const std::exception &error) {
             tell_error(error);

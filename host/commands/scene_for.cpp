@@ -173,7 +173,7 @@ int run(const std::vector<std::string> &files) {
             throw Error(file + ": a scene cannot name this file: a backslash separates folders there");
         models.push_back({file, read_obj(file, {})});
     }
-    print_text(scene_text(models));
+    print_data(scene_text(models));
     return 0;
 }
 

@@ -50,10 +50,10 @@ nlohmann::json json_of(const ConformanceCase &c) {
 }
 
 int run(const Options &o) {
-    prepare_json(o.json);
     std::vector<TestDescription> tests; // all are read first, so that a mistake in the last is reported at once
     for (const std::string &file : o.files)
         tests.push_back(load_test(file, o.scene.load));
+    prepare_json(o.json);
 
     Strategy strategy;
     override_strategy(strategy, o.scene.overrides);

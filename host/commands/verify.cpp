@@ -11,6 +11,7 @@
 #include "commands/vary.h"
 #include "compare/agreement.h"
 #include "flatten/features.h"
+#include "image/metrics.h"
 #include "render/kernel_choice.h"
 #include "render/renderer.h"
 
@@ -126,13 +127,15 @@ std::vector<StrategyRender> render_all(const Options &o, const std::vector<Named
     return renders;
 }
 
+constexpr const char *evidence_report = "verify.json"; // in the folder
+
 void leave_evidence(const std::filesystem::path &folder, const Agreement &agreement,
                     const std::vector<StrategyRender> &renders, const nlohmann::json &report) {
     const PairTest &worst = agreement.worst();
     write_evidence(folder, renders[worst.a].image, renders[worst.b].image, worst.test);
     for (size_t i = 0; i < renders.size(); i++)
         write_exr(renders[i].image, folder / fmt::format("strategy_{}.exr", i + 1));
-    write_safely(folder / "verify.json", dump(report, 2) + "\n");
+    write_safely(folder / evidence_report, dump(report, 2) + "\n");
     print("evidence: {} (image: strategy {}, reference: strategy {})\n", folder.string(), worst.a + 1, worst.b + 1);
 }
 
@@ -154,7 +157,7 @@ int verify(const Options &o, SceneDescription scene, const std::filesystem::path
     watch_interrupts();
     std::vector<StrategyRender> renders = render_all(o, strategies, scenes, device, clock);
     for (StrategyRender &render : renders)
-        render.image.metadata["opal.dialect"] = name_of(scene.dialect);
+        render.image.metadata.insert({{"opal.dialect", name_of(scene.dialect)}, {"opal.scene_hash", scene.hash}});
     if (renders.size() < strategies.size()) {
         warn(fmt::format("interrupted after {} of {} strategies: no verdict", renders.size(), strategies.size()));
         return interrupt_exit_code();
@@ -164,9 +167,15 @@ int verify(const Options &o, SceneDescription scene, const std::filesystem::path
             "the budget of {} was exceeded by {:.0f} s: compiling, and {} samples a pixel of each at the least",
             duration_text(o.budget), -clock.left(), least_spp));
 
+    for (const StrategyRender &render : renders)
+        if (const size_t count = invalid_pixels(render.image).count)
+            throw Error(fmt::format("{}: {}: {} pixels of the mean image are NaN or infinite, so that nothing can be "
+                                    "told",
+                                    scene.file.string(), render.how.name, count));
     const Agreement agreement = test_agreement(renders, o.significance);
     report = json_of(agreement, renders);
     report.update(object({{"scene", scene.file.string()},
+                          {"scene_hash", scene.hash},
                           {"dialect", name_of(scene.dialect)},
                           {"definitions", scene.definitions},
                           {"device", pick.info.name},
@@ -212,11 +221,15 @@ int run(const Options &o) {
     const std::filesystem::path folder = o.out.empty() ? "verify_" + o.scene.file.stem().string() : o.out;
     if (!std::filesystem::is_directory(folder))
         check_writable(folder);
-    prepare_json(o.json);
-    if (!o.vary.empty())
+    const std::filesystem::path own = folder / evidence_report;
+    if (!o.vary.empty()) {
+        prepare_json(o.json, {own});
         return verify_values(o, folder);
+    }
+    SceneDescription scene = load_scene(o.scene);
+    prepare_json(o.json, {own});
     nlohmann::json report;
-    const int code = verify(o, load_scene(o.scene), folder, clock, report);
+    const int code = verify(o, std::move(scene), folder, clock, report);
     if (!report.is_null()) // null: interrupted
         write_json(o.json, "verify", report);
     return code;

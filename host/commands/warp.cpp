@@ -73,7 +73,7 @@ int run(const Options &o) {
         throw UsageError("opal warp needs a name; available: " + joined(names_of(targets())));
     prepare_json(o.json);
     if (!o.plot.empty())
-        check_writable(o.plot);
+        check_output(o.plot);
     const DevicePick pick = choose_device(o.device);
     const Device device = open_device(pick.info);
     BuildOptions build;

@@ -1,7 +1,9 @@
 #include "device/program.h"
 
+#include "base/error.h"
 #include "base/log.h"
 #include "base/units.h"
+#include "base/values.h"
 #include "device/kernel_cache.h"
 
 #include <fmt/format.h>
@@ -110,9 +112,11 @@ cl::Program build_program(const Device &device, const std::string &text, const B
     try {
         program.build({device.handles->device}, build_flags(options).c_str());
     } catch (const cl::Error &error) {
-        throw Error(fmt::format("{} (driver {}): the kernels do not build: {}; flags {}\n{}{}", device.info.name,
-                                device.info.driver, cl_error_name(error.err()), build_flags(options),
-                                log_of(program, device.handles->device), lacking(device)));
+        std::vector<std::string> lines = lines_of(log_of(program, device.handles->device) + lacking(device));
+        lines.insert(lines.begin(),
+                     fmt::format("{} (driver {}): the kernels do not build: {}; flags {}", device.info.name,
+                                 device.info.driver, cl_error_name(error.err()), build_flags(options)));
+        throw ErrorList(lines);
     }
     if (file)
         file->find_files();

@@ -1,6 +1,6 @@
 #include "flatten/precision_warnings.h"
 
-#include "flatten/geometry.h"
+#include "flatten/emitter_kinds.h"
 
 #include <fmt/format.h>
 
@@ -43,6 +43,7 @@ public:
                             flat_.meshes[i].emitter != OPAL_NONE);
             check_bsdf(mesh.bsdf, mesh.bsdf.place.line ? mesh.bsdf.place : mesh.place);
         }
+        check_lights();
         for (const auto &[text, kind] : kinds_)
             if (kind.count > most_told)
                 lines_[kind.last] += fmt::format(" (and {} more like this)", kind.count - most_told);
@@ -90,6 +91,20 @@ private:
                 "radiance {:.1e}: the image holds it, but its squares leave the range of floats, and with them the "
                 "error bars",
                 radiance);
+    }
+
+    // Flattening multiplies intensities by the square of its scale.
+    void check_lights() {
+        size_t i = flat_.emitters.size(); // the lights are the last emitters, in their order, without the black ones
+        for (auto light = scene_.lights.rbegin(); light != scene_.lights.rend(); ++light) {
+            if (is_black(*light))
+                continue;
+            const auto &color = flat_.emitters[--i].u.color;
+            const bool is_lost = std::ranges::all_of(color, [](float channel) { return channel == 0; });
+            if (is_lost || !std::ranges::all_of(color, [](float channel) { return std::isfinite(channel); }))
+                add_warning(light->place, "this light leaves the range of floats in a scene of size {:.1e}: {}",
+                            extent_.longest_side(), is_lost ? "it emits nothing" : "the image is wrong");
+        }
     }
 
     void check_bsdf(const Bsdf &bsdf, const SourcePlace &place) {

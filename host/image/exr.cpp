@@ -48,6 +48,14 @@ public:
             throw std::runtime_error("the file ends too early");
         std::copy_n(bytes_.begin() + static_cast<std::ptrdiff_t>(place_), count, bytes);
         place_ += static_cast<size_t>(count);
+        // A whole number behind a text is the size of an attribute, for which OpenEXR makes room before it reads on, or
+        // the type of a channel's pixels, 0 to 2.
+        int32_t number = 0;
+        if (text_ended_ && count == sizeof number)
+            std::memcpy(&number, bytes, sizeof number);
+        if (number > 2 && static_cast<size_t>(number) > bytes_.size() - place_)
+            throw std::runtime_error("an attribute is larger than the file");
+        text_ended_ = count == 1 && bytes[0] == '\0';
         return place_ < bytes_.size();
     }
     uint64_t tellg() override { return place_; }
@@ -56,6 +64,7 @@ public:
 private:
     std::string bytes_;
     size_t place_ = 0;
+    bool text_ended_ = false; // by the byte that was read last
 };
 
 // The head of a file in memory, for writing.
@@ -169,6 +178,21 @@ void read_attributes(const Imf::Header &header, Image &image) {
         else if (const auto *number = dynamic_cast<const Imf::FloatAttribute *>(value))
             image.metadata[attribute.name()] = number->value();
     }
+}
+
+// Throws where so small a file cannot hold so large an image: memory for it, and for OpenEXR's buffers of up to 256
+// lines, would be taken before its end is seen.
+void check_size(const Imf::Header &header, size_t file_size) {
+    constexpr double most_lines = 256, least_limit = 128e6; // bytes
+    constexpr double most_compression = 65536;              // DWAB makes 1 byte of 28856 of black lines of 8192 pixels
+    const Imath::Box2i window = header.dataWindow();
+    double bytes_a_pixel = 0;
+    for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
+        bytes_a_pixel += sizeof(float);
+    const double width = double(window.max.x) - window.min.x + 1, height = double(window.max.y) - window.min.y + 1;
+    if (width * std::max(height, most_lines) * bytes_a_pixel >
+        std::max(least_limit, most_compression * double(file_size)))
+        throw Error(fmt::format("{} bytes cannot hold {} x {} pixels", file_size, width, height));
 }
 
 Image read_pixels(Imf::MultiPartInputFile &parts, int part) {
@@ -327,13 +351,18 @@ std::vector<std::string> zips_blocks(const Image &image, const Imf::Header &head
 
 } // namespace
 
-Image read_exr(const std::filesystem::path &file) {
-    MemoryInput stream(file, read_file(file));
+Image read_exr(const std::filesystem::path &file, FileHashes *hashes) {
+    std::string bytes = read_file(file);
+    if (hashes)
+        hashes->add(bytes);
+    const size_t size = bytes.size();
+    MemoryInput stream(file, std::move(bytes));
     try {
         Imf::MultiPartInputFile input(stream);
         const int part = picture_part(input);
         if (!input.partComplete(part))
             throw Error("the file is incomplete");
+        check_size(input.header(part), size);
         Image image = read_pixels(input, part);
         if (input.parts() > 1)
             note(fmt::format("{}: has {} parts; takes {}", file.string(), input.parts(),
@@ -354,6 +383,14 @@ nlohmann::json json_of(const Crop &crop) {
                    {"height", crop.height},
                    {"of_width", crop.of_width},
                    {"of_height", crop.of_height}});
+}
+
+void check_exr_size(int width, size_t layers) {
+    // A chunk, here a line, tells its size in bytes as an int.
+    const size_t most = size_t(std::numeric_limits<int>::max()) / (sizeof(float) * layers);
+    if (size_t(width) > most)
+        throw Error(fmt::format("an EXR of {} layers holds at most {} pixels a line, and the image has {}", layers,
+                                most, width));
 }
 
 std::string exr_bytes(const Image &image) {

@@ -45,7 +45,7 @@ Image cropped(const Image &image, const Crop &part) {
     const Crop from = image.place();
     Image result{part.width, part.height, {}, image.metadata, part.is_whole() ? Crop{} : part};
     for (const Layer &layer : image.layers) {
-        Layer &own = result.layers.emplace_back(layer.name, std::vector<float>());
+        Layer &own = result.layers.emplace_back(Layer{layer.name, {}});
         for (int y = part.y - from.y; y < part.y - from.y + part.height; y++) {
             const auto row = layer.values.begin() + std::ptrdiff_t(y) * image.width + (part.x - from.x);
             own.values.insert(own.values.end(), row, row + part.width);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/crop.h"
+#include "base/hash.h"
 
 #include <filesystem>
 #include <map>
@@ -40,7 +41,7 @@ Image cropped(const Image &image, const Crop &part); // the part, which the imag
 // Reads every float and half channel of the part that holds the picture: of several parts the one named rgb, beauty or
 // Combined, else the first with R, G, B. Channels r g b, Y alone and *.Combined.R, .G, .B become R, G, B. Notes tell
 // what was chosen. A data window within a larger display window is a crop, as the attribute opal.crop is.
-Image read_exr(const std::filesystem::path &file);
+Image read_exr(const std::filesystem::path &file, FileHashes *hashes = nullptr); // hashes: gets that of the bytes
 
 // Writes the form that most programs read right (measured): one part of scanlines, float32, ZIPS, both windows from
 // (0, 0), colour space and chromaticities (Rec. 709) as attributes. Names of layers ("variance.R") must not begin with
@@ -62,15 +63,30 @@ struct Display {
 void write_png(const Image &image, const std::filesystem::path &file, const Display &display = {});
 double srgb_encode(double linear); // of a linear value, clamped to 0 to 1
 
+// Where the PNG of an EXR goes: beside it. Empty where nothing can be beside it: it is a FIFO, a device, /dev/stdout.
+std::filesystem::path png_beside(const std::filesystem::path &exr);
+
+// Throw Error where a file of that format cannot hold an image of that size. layers: those of an EXR.
+void check_png_size(int width, int height);
+void check_exr_size(int width, size_t layers);
+
 // Makes a folder, and those above it, unless it is there. Throws Error with the reason of the system.
 void make_folder(const std::filesystem::path &folder);
 
-// Error unless write_safely could write this file. Call it before rendering, not after.
+// Error unless write_safely could write this file. Call it before rendering, not after. Removes temporary files in the
+// file's folder that killed processes left: those of this user that are a day old.
 void check_writable(const std::filesystem::path &file);
 
-// Writes a temporary file beside `file` and renames it when it is whole: no file is ever half-written. Error with the
-// reason of the system ("No space left on device"); the temporary file is then removed. A symbolic link's target is
-// replaced, not the link. A file that is not regular (/dev/stdout) is written in place.
+// check_writable, and UsageError where the file is an input or another output (base/file_use.h): for the files that a
+// command line names.
+void check_output(const std::filesystem::path &file);
+
+// Writes a temporary file (.opal-<random>.tmp) beside `file` and renames it when it is whole: no file is ever
+// half-written. Error with the reason of the system ("No space left on device"); the temporary file is then removed, as
+// it is if a signal but SIGKILL ends the process. Mode and owner of a file that is replaced stay. A symbolic link's
+// target is written, also one that is not there yet. Devices and FIFOs are written in place; /dev/stdout, /dev/fd/3 and
+// links to them through the open descriptor, as a shell's >> wants it. Throws InterruptedWait if a signal comes while
+// it waits for a FIFO's reader.
 void write_safely(const std::filesystem::path &file, const std::string &bytes);
 
 } // namespace opal

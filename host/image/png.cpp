@@ -1,6 +1,7 @@
 #include "image/image.h"
 
 #include "base/error.h"
+#include "base/file_use.h"
 #include "image/deflate.h"
 
 #include <fmt/format.h>
@@ -150,6 +151,22 @@ std::string png_bytes(const Image &image, const Display &display) {
 double srgb_encode(double linear) {
     const double x = std::clamp(linear, 0.0, 1.0);
     return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+}
+
+std::filesystem::path png_beside(const std::filesystem::path &exr) {
+    std::error_code ignored;
+    const std::filesystem::file_status status = std::filesystem::status(exr, ignored);
+    const bool special = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+    return special || descriptor_of(exr) ? std::filesystem::path()
+                                         : std::filesystem::path(exr).replace_extension(".png");
+}
+
+void check_png_size(int width, int height) {
+    constexpr int most = PNG_USER_WIDTH_MAX; // what programs with libpng read
+    static_assert(most == PNG_USER_HEIGHT_MAX);
+    if (width > most || height > most)
+        throw Error(
+            fmt::format("a PNG holds at most {} pixels a side, and the image has {} x {}", most, width, height));
 }
 
 void write_png(const Image &image, const std::filesystem::path &file, const Display &display) {

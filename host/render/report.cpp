@@ -3,12 +3,15 @@
 #include "base/command_line.h"
 #include "base/json.h"
 #include "base/log.h"
+#include "base/printable.h"
 #include "base/values.h"
+#include "image/metrics.h"
 #include "scene/options.h"
 #include "stats/special.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -25,7 +28,7 @@ double samples_per_second(const FilmStatistics &s, const RenderSeconds &seconds)
 // A number as a number where the attribute holds it: a seed of more than 31 bits stays exact as text.
 Attribute attribute_of(const json &value) {
     if (value.is_string())
-        return value.get<std::string>();
+        return as_utf8(value.get_ref<const std::string &>());
     if (value.is_number_float())
         return value.get<float>();
     if (value.is_number_integer() && std::in_range<int>(value.get<long long>()))
@@ -67,6 +70,7 @@ nlohmann::json RenderReport::json() const {
     const FilmStatistics &s = statistics;
     nlohmann::json j;
     j["scene"] = scene.file.string();
+    j["scene_hash"] = scene.hash;
     j["dialect"] = name_of(scene.dialect);
     j["definitions"] = scene.definitions;
     j["device"] = device.name;
@@ -158,6 +162,22 @@ nlohmann::json StopReport::json() const {
     return j;
 }
 
+ImageFault find_fault(const Image &image, const FilmStatistics &s) {
+    bool black = true;
+    for (const char *channel : {"R", "G", "B"})
+        black = black && std::ranges::all_of(image.get(channel).values, [](float value) { return value == 0; });
+    const bool samples_black = s.samples > 0 ? s.mean_rgb == std::array<double, 3>{} : s.invalid == 0;
+    return {invalid_pixels(image).count, black && !samples_black};
+}
+
+std::string ImageFault::text() const {
+    if (invalid_pixels > 0)
+        return fmt::format("{} pixels of the image are NaN or infinite: their radiances or weights are beyond single "
+                           "precision",
+                           invalid_pixels);
+    return samples_lost ? "the image is black although its samples are not" : "";
+}
+
 std::vector<std::string> film_warnings(const RenderReport &render) {
     const Film &film = render.film;
     std::vector<std::string> lines;
@@ -192,7 +212,7 @@ void add_metadata(Image &image, const json &report, const std::string &command_l
     for (const auto &[key, value] : report.items())
         if (key != "crop") // write_exr notes Image::crop
             image.metadata["opal." + key] = attribute_of(value);
-    image.metadata["opal.command_line"] = command_line;
+    image.metadata["opal.command_line"] = as_utf8(command_line);
 }
 
 } // namespace opal

@@ -2,6 +2,7 @@
 #include "base/log.h"
 #include "flatten/geometry.h"
 #include "read/nori/load.h"
+#include "support/error_of.h"
 #include "support/plain_scenes.h"
 
 #include <catch2/catch.hpp>
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 
 using namespace opal;
 
@@ -93,6 +95,18 @@ TEST_CASE("the camera's columns, film and clips", "[flatten]") {
     }
 }
 
+TEST_CASE("the film is part of the image for the largest images and filters", "[flatten]") {
+    SceneDescription scene;
+    const int most = std::numeric_limits<int>::max();
+    scene.camera.width = scene.camera.height = most;
+    for (const double radius : {2.0, 1e38}) {
+        CAPTURE(radius);
+        scene.camera.filter = {FILTER_gaussian, radius, 0.5, 0, 0, true};
+        const PixelWindow film = flatten(scene, 1).settings.film;
+        CHECK((film.left == 0 && film.top == 0 && film.width == uint(most) && film.height == uint(most)));
+    }
+}
+
 TEST_CASE("every number of the scene reaches the settings", "[flatten]") {
     SceneDescription scene = scene_of({diffuse(Parallelogram{{-4, -4, 0}, {8, 0, 0}, {0, 8, 0}})}); // scale 1/4
     scene.camera.filter = {FILTER_mitchell, 3, 0.75, 0.25, 0.125, true};
@@ -110,6 +124,32 @@ TEST_CASE("every number of the scene reaches the settings", "[flatten]") {
     CHECK((s.light_position[0] == 1 && s.light_position[1] == 2 && s.light_energy[0] == 1 && s.light_energy[2] == 4));
     CHECK(s.choices[AXIS_sampler] == CHOICE_sampler_sobol);
     CHECK(s.choices[AXIS_integrator] == CHOICE_integrator_path);
+}
+
+TEST_CASE("A filter reaches no farther than its weights and the image, and gathers no more than can be waited for",
+          "[flatten]") {
+    SceneDescription scene = scene_of({diffuse(one_triangle)});
+    scene.camera.width = 1000;
+    scene.camera.height = 500;
+    scene.camera.crop = {400, 200, 10, 10, 1000, 500};
+    const auto film = [&](const Filter &filter) {
+        scene.camera.filter = filter;
+        return flatten(scene, 8).settings.film;
+    };
+    CHECK(film({FILTER_gaussian, 2, 0.5}).width == 14);
+    CHECK(film({FILTER_gaussian, 1e38, 0.5}).width == film({FILTER_gaussian, 20, 0.5}).width);
+    CHECK(film({FILTER_gaussian, 1e38, 0.5}).width == 10 + 2 * 7); // exp(-7.5^2 / 0.5) is 0 in single precision
+    CHECK(film({FILTER_mitchell, 31.5}).width == 10 + 2 * 31);
+    for (const Filter &wide :
+         {Filter{FILTER_mitchell, 32}, Filter{FILTER_mitchell, 1e38}, Filter{FILTER_gaussian, 1e9, 1e8}}) {
+        scene.camera.filter = wide;
+        scene.camera.filter.place = {"a.xml", 3, 1};
+        CHECK_THAT(test::error_of([&] { flatten(scene, 8); }),
+                   Catch::StartsWith("a.xml:3:1: ") && Catch::EndsWith("possible: a radius up to 31.5"));
+    }
+    scene.camera.width = scene.camera.height = 64; // so few pixels are soon gathered
+    scene.camera.crop = {};
+    CHECK(film({FILTER_mitchell, 1e38}).width == 64);
 }
 
 // The triangles that listed face i stands for: in the slots that the device finds them in, with the corners that it

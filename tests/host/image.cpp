@@ -213,6 +213,25 @@ TEST_CASE("A file that is no EXR, or only a part of one, is refused by name", "[
     CHECK_THROWS_AS(read_exr(folder / "half.exr"), Error);
 }
 
+TEST_CASE("An EXR that states larger attributes or images than it can hold takes no memory for them", "[image]") {
+    const ScratchFolder folder;
+    write_exr(gradient(4, 2), folder / "whole.exr");
+    const std::string bytes = test::read_text(folder / "whole.exr");
+    // The file with another number of 32 bits behind that text and `skipped` bytes.
+    const auto with_number = [&](const std::string &text, size_t skipped, int32_t number) {
+        std::string changed = bytes;
+        const size_t at = bytes.find(text);
+        REQUIRE(at != bytes.npos);
+        std::memcpy(&changed[at + text.size() + skipped], &number, sizeof number);
+        return folder.write("changed.exr", changed);
+    };
+    using namespace std::literals;
+    const auto file = with_number("software\0string\0"s, 0, 100000);
+    CHECK_THROWS_WITH(read_exr(file), Catch::Contains("an attribute is larger than the file"));
+    with_number("dataWindow\0box2i\0"s, sizeof(int32_t) + 2 * sizeof(int32_t), 1 << 24); // its right end
+    CHECK_THROWS_WITH(read_exr(file), Catch::Contains("bytes cannot hold 16777217 x 2 pixels"));
+}
+
 TEST_CASE("A missing layer is named with those that there are", "[image]") {
     CHECK_THROWS_WITH(gradient(1, 1).get("albedo"), "the image has no layer 'albedo'; available: R, G, B, variance.R");
 }

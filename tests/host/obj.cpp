@@ -694,8 +694,10 @@ TEST_CASE_METHOD(ObjFixture, "a mirror turns the geometric normal and not the gi
 }
 
 TEST_CASE_METHOD(ObjFixture, "normals of no length are missing ones", "[obj]") {
-    TriangleMesh mesh = read(square + "vn 0 0 0\nvn 0 0 1e-30\nf 1//1 2//2 3//1\n");
+    // 1 / 5e-324 is infinite
+    TriangleMesh mesh = read(square + "vn 0 0 0\nvn 0 0 1e-30\nvn 0 0 5e-324\nf 1//1 2//2 3//3\n");
     CHECK(mesh.triangles[0][0].normal == OPAL_NONE);
+    CHECK(mesh.triangles[0][2].normal == OPAL_NONE);
     REQUIRE(mesh.triangles[0][1].normal == 0);
     CHECK(mesh.normals.size() == 1);
     CHECK(mesh.normals[0].z == 1);

@@ -86,3 +86,22 @@ TEST_CASE("Where single precision does not hold is told with its line", "[precis
               "3:", "radiance 1.0e+19");
     check_one(warnings_of("0 -1e5 1", ""), "6:", "5e+04 sizes");
 }
+
+TEST_CASE("Lights that leave the range of floats in the scene's units are told", "[precision_warnings]") {
+    SceneDescription scene;
+    Mesh floor;
+    floor.shape = Parallelogram{{}, {1e-3, 0, 0}, {0, 1e-3, 0}};
+    scene.meshes = {floor};
+    const auto warnings_at = [&](double power) {
+        scene.lights = {{emitter_point{.position = {}, .power = {0, 0, 0}}, {"a.xml", 6, 1}},
+                        {emitter_point{.position = {}, .power = {power, power, power}}, {"a.xml", 7, 3}}};
+        return precision_warnings(scene, flatten(scene, 1));
+    };
+    CHECK(warnings_at(1).empty());
+    REQUIRE(warnings_at(1e38).size() == 1);
+    CHECK_THAT(warnings_at(1e38)[0], Catch::StartsWith("a.xml:7:3") && Catch::EndsWith("the image is wrong"));
+    floor.shape = Parallelogram{{}, {1e3, 0, 0}, {0, 1e3, 0}};
+    scene.meshes = {floor};
+    REQUIRE(warnings_at(1e-42).size() == 1);
+    CHECK_THAT(warnings_at(1e-42)[0], Catch::EndsWith("it emits nothing"));
+}

@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <ctime>
+
 using namespace opal;
 using opal::test::error_of;
 
@@ -32,4 +34,11 @@ TEST_CASE("the nearest name is found by edits of any kind, whatever the case", "
     CHECK(nearest_name("fox", known) == "fov");
     CHECK(nearest_name("width", known).empty());
     CHECK(nearest_name("", known).empty());
+}
+
+TEST_CASE("a name of many megabytes is near none, which takes no time to tell", "[table]") {
+    const std::vector<std::string> known(20, "emitter-choice");
+    const std::clock_t start = std::clock();
+    CHECK(nearest_name(std::string(20'000'000, 'e'), known).empty());
+    CHECK(double(std::clock() - start) / CLOCKS_PER_SEC < 1); // to compare its letters took 14 s
 }

@@ -237,12 +237,12 @@ TEST_CASE("Names of any bytes keep the image and the JSON", "[render_command]") 
     INFO(outcome.err);
     REQUIRE(outcome.exit_code == 0);
     const auto stats = nlohmann::json::parse(read_text(folder.scratch / "stats.json"));
-    CHECK_THAT(stats["scene"].get<std::string>(), Catch::EndsWith("sz\uFFFDne.xml"));
-    CHECK_THAT(stats["warnings"][0].get<std::string>(), Catch::Contains("k\uFFFDse.obj:5:1: dropped 1 triangles"));
+    CHECK_THAT(stats["scene"].get<std::string>(), Catch::EndsWith("sz\\xe4ne.xml"));
+    CHECK_THAT(stats["warnings"][0].get<std::string>(), Catch::Contains("k\\xe4se.obj:5:1: dropped 1 triangles"));
     const Image image = read_exr(folder.scratch / "b\344r.exr");
-    CHECK(image.text("opal.scene") == folder.scene); // the bytes themselves
+    CHECK(image.text("opal.scene") == stats["scene"].get<std::string>());
     CHECK(image.text("opal.dialect") == "upstream");
-    CHECK_THAT(image.text("opal.warnings"), Catch::Contains("k\uFFFDse.obj"));
+    CHECK_THAT(image.text("opal.warnings"), Catch::Contains("k\\\\xe4se.obj"));
 }
 
 TEST_CASE("A line tells that files are being written where that takes long", "[render_command]") {

@@ -1,5 +1,6 @@
 #include "read/nori/load.h"
 
+#include "base/file_use.h"
 #include "base/log.h"
 #include "read/nori/names.h"
 #include "read/nori/parsers.h"
@@ -63,7 +64,9 @@ void warn_if_black(const SceneDescription &scene, const XmlNode &node) {
 } // namespace
 
 ParseContext context_for(const std::filesystem::path &file, const LoadOptions &options, Mistakes &mistakes) {
-    ParseContext context{file.parent_path(), options.lenient, &mistakes};
+    // Names in a scene that comes by /dev/stdin are of the current folder.
+    ParseContext context{descriptor_of(file) ? std::filesystem::path() : file.parent_path(), options.lenient,
+                         &mistakes};
     if (options.dialect != "auto")
         context.dialect = Dialect(&find_row(dialects(), "dialect", options.dialect) - dialects().data());
     return context;
@@ -101,7 +104,8 @@ SceneDescription parse_scene(const XmlNode &node, const ParseContext &context) {
 }
 
 SceneDescription load_scene(const std::filesystem::path &file, const LoadOptions &options) {
-    XmlDocument document(file);
+    FileHashes hashes;
+    XmlDocument document(file, &hashes);
     XmlNode root = document.root();
     if (root.tag() == "test")
         root.fail("this is a <test>, not a <scene>: run it with `opal test`");
@@ -113,8 +117,10 @@ SceneDescription load_scene(const std::filesystem::path &file, const LoadOptions
     mistakes.throw_all(); // what lacks its value would be told twice
     const DialectChoice choice = choose_dialect(root, context);
     context.dialect = choice.dialect; // so that parse_scene does not look for names again
+    context.hashes = &hashes;
     SceneDescription scene = parse_scene(root, context);
     scene.definitions = definitions;
+    scene.hash = hashes.value();
     mistakes.throw_all();
     tell_dialect(scene, choice, root.place());
     return scene;
