@@ -209,7 +209,7 @@ CachedProgram::CachedProgram(const std::string &identity, fs::path driver_files)
             fs::remove(driver_files_ / file, ignored);
     if (cache_folder().path.empty())
         return;
-    const fs::path file = cache_folder().path / name_;
+    const fs::path file = path();
     const Descriptor opened(open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
     if (opened < 0 && errno == ENOENT)
         return;
@@ -229,7 +229,7 @@ CachedProgram::CachedProgram(const std::string &identity, fs::path driver_files)
     }
 }
 
-void CachedProgram::remove() { unlink((cache_folder().path / name_).c_str()); }
+void CachedProgram::remove() { unlink(path().c_str()); }
 
 void CachedProgram::unpack(const std::string &bytes) {
     std::string_view left = checked_contents(bytes, name_);
@@ -285,7 +285,7 @@ void CachedProgram::store() {
         const std::string bytes = read_file(driver_files_ / file);
         contents += fmt::format("{} {}\n", bytes.size(), file) + bytes;
     }
-    const fs::path folder = cache_folder().path, file = folder / name_;
+    const fs::path folder = cache_folder().path, file = path();
     std::string temporary = (folder / (std::string(temporary_prefix) + "XXXXXX")).string();
     const int made = mkostemp(temporary.data(), O_CLOEXEC); // exclusive, mode 600
     if (made < 0)

@@ -46,7 +46,7 @@ public:
     void find_files(); // call when it was built: finds the driver's files of this program
     void store();      // writes the file anew if the driver has made more of them
     void remove();
-    const std::string &name() const { return name_; } // of the file
+    std::filesystem::path path() const { return cache_folder().path / name_; }
     bool was_cached() const { return cached_; }
 
     // Whether this process has not launched that kernel yet, and it comes from the cache. Next time: false.

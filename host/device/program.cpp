@@ -141,7 +141,7 @@ LaunchScope::LaunchScope(const Device &device, const cl::Kernel &kernel) : excep
             file_ = built.file;
     first_ = file_ && file_->was_cached() && file_->is_first_launch(kernel.getInfo<CL_KERNEL_FUNCTION_NAME>());
     if (first_)
-        WorkFolder::own().mark(file_->name());
+        WorkFolder::own().mark(file_->path());
 }
 
 LaunchScope::~LaunchScope() {

@@ -38,10 +38,9 @@ bool has_room(const fs::path &folder) {
            1ull * status.f_bavail * status.f_frsize >= least_room;
 }
 
-// The process that used `file` died in its first launch.
-void distrust(const std::string &name) {
-    const fs::path file = cache_folder().path / name;
-    if (!cache_folder().path.empty() && !name.empty() && name.find('/') == name.npos && unlink(file.c_str()) == 0)
+// The process that used `file` died in its first launch. Another process may have had another cache.
+void distrust(const fs::path &file) {
+    if (file.is_absolute() && file.parent_path() == cache_folder().path && unlink(file.c_str()) == 0)
         warn(fmt::format("{}: a run ended while it launched these kernels for the first time: they are thrown away and "
                          "compiled anew",
                          file.string()));
@@ -60,9 +59,9 @@ void remove_dead(const fs::path &parent) {
         const bool dead =
             lock >= 0 ? flock(lock, LOCK_EX | LOCK_NB) == 0 : status.st_mtime < time(nullptr) - longest_start;
         if (dead) {
-            std::string name;
-            std::getline(std::ifstream(folder / mark_name), name);
-            distrust(name);
+            std::string file;
+            std::getline(std::ifstream(folder / mark_name), file);
+            distrust(file);
             fs::remove_all(folder, ignored);
         }
         if (lock >= 0)
@@ -88,6 +87,7 @@ WorkFolder::WorkFolder() : owner_(getpid()) {
         parents.insert(parents.begin() + 1, cache.path);
         remove_dead(cache.path);
     }
+    std::erase(parents, ""); // there is no such temporary folder
     const bool made = std::ranges::any_of(parents, [&](const fs::path &p) { return has_room(p) && make_in(p); }) ||
                       std::ranges::any_of(parents, [&](const fs::path &p) { return make_in(p); });
     if (!made)
@@ -123,7 +123,7 @@ WorkFolder::~WorkFolder() {
         fs::remove_all(path_, ignored);
 }
 
-void WorkFolder::mark(const std::string &name) { std::ofstream(path_ / mark_name) << name; }
+void WorkFolder::mark(const fs::path &file) { std::ofstream(path_ / mark_name) << file.string(); }
 
 void WorkFolder::unmark() { unlink((path_ / mark_name).c_str()); }
 

@@ -20,7 +20,7 @@ public:
 
     // The file of the cache whose kernels are being launched for the first time. A process that finds a mark of one
     // that was killed removes the file, with a warning.
-    void mark(const std::string &name);
+    void mark(const std::filesystem::path &file);
     void unmark();
 
 private:

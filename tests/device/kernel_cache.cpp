@@ -90,7 +90,7 @@ TEST_CASE("A damaged file of the cache is thrown away, and its kernels are compi
     const fs::path dead = place.cache / "opal-run-dead";
     fs::create_directory(dead);
     std::ofstream(dead / "lock");
-    std::ofstream(dead / "first_launch") << longer.filename().string();
+    std::ofstream(dead / "first_launch") << longer.string();
     const Outcome distrusting = place.render();
     CHECK(distrusting.exit_code == 0);
     CHECK_THAT(distrusting.err, Catch::StartsWith("warning: " + longer.string() + ": a run ended while it launched"));
