@@ -1,6 +1,7 @@
 #include "base/read_file.h"
 
 #include "base/error.h"
+#include "base/memory.h"
 
 #include <fmt/format.h>
 
@@ -21,6 +22,8 @@ namespace {
 std::string read_stream(std::FILE *stream, const fs::path &file) {
     std::error_code unknown; // set for pipes and devices, which have no size and are read to their end
     const auto size = fs::file_size(file, unknown);
+    if (!unknown)
+        check_memory(double(size), file.string() + ": cannot read");
     std::string bytes(unknown ? 65536 : size + 1,
                       '\0'); // one byte more than the size, so that the end is seen without growing
     size_t count = 0;

@@ -1,6 +1,7 @@
 // opal render: scenes to EXRs and PNGs.
 #include "base/command_line.h"
 #include "base/error.h"
+#include "base/exit_code.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/progress.h"
@@ -205,7 +206,12 @@ int report(const Request &request, RenderedFilm &rendered, const RenderReport &r
     for (const std::string &line : film_warnings(render))
         warn(line);
     Image image = take_image(rendered.film, variance);
+    const ImageFault fault = find_fault(image, render.statistics);
+    if (fault)
+        warn(fault.text());
     nlohmann::json json = render.json();
+    json["invalid_pixels"] = fault.invalid_pixels;
+    json["samples_lost"] = fault.samples_lost;
     const StopReport stop = report_stop(request.rule, rendered.stopped, render);
     if (choice)
         json["auto"] = choice->json();
@@ -228,7 +234,7 @@ int report(const Request &request, RenderedFilm &rendered, const RenderReport &r
     }
     info("wrote   " + request.files.text());
     if (rendered.stopped.complete)
-        return 0;
+        return fault ? exit_failed : exit_done;
     warn(fmt::format("interrupted: the image holds {:.4g} of {} samples a pixel", render.spp(), rendered.stopped.spp));
     return interrupt_exit_code();
 }
@@ -296,7 +302,10 @@ int render_scenes(Options o) {
         forget_warnings();
         o.scene.file = scene;
         try {
-            if (const int code = render_scene(o))
+            const int code = render_scene(o);
+            if (code == exit_failed)
+                failed.push_back(scene);
+            else if (code)
                 return code; // interrupted
         } catch (const std::exception &error) {
             tell_error(error);

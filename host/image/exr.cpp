@@ -351,8 +351,10 @@ std::vector<std::string> zips_blocks(const Image &image, const Imf::Header &head
 
 } // namespace
 
-Image read_exr(const std::filesystem::path &file) {
+Image read_exr(const std::filesystem::path &file, FileHashes *hashes) {
     std::string bytes = read_file(file);
+    if (hashes)
+        hashes->add(bytes);
     const size_t size = bytes.size();
     MemoryInput stream(file, std::move(bytes));
     try {

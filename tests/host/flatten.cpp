@@ -2,6 +2,7 @@
 #include "base/log.h"
 #include "flatten/geometry.h"
 #include "read/nori/load.h"
+#include "support/error_of.h"
 #include "support/plain_scenes.h"
 
 #include <catch2/catch.hpp>
@@ -94,16 +95,24 @@ TEST_CASE("the camera's columns, film and clips", "[flatten]") {
     }
 }
 
-TEST_CASE("the film is part of the image for the largest images and filters", "[flatten]") {
+TEST_CASE("the film is all of the largest image", "[flatten]") {
     SceneDescription scene;
     const int most = std::numeric_limits<int>::max();
     scene.camera.width = scene.camera.height = most;
-    for (const double radius : {2.0, 1e38}) {
-        CAPTURE(radius);
-        scene.camera.filter = {FILTER_gaussian, radius, 0.5, 0, 0, true};
-        const PixelWindow film = flatten(scene, 1).settings.film;
-        CHECK((film.left == 0 && film.top == 0 && film.width == uint(most) && film.height == uint(most)));
-    }
+    scene.camera.filter = {FILTER_gaussian, 2, 0.5, 0, 0, true};
+    const PixelWindow film = flatten(scene, 1).settings.film;
+    CHECK((film.left == 0 && film.top == 0 && film.width == uint(most) && film.height == uint(most)));
+}
+
+TEST_CASE("a listed triangle has a plane where two corners are much nearer than the third", "[flatten]") {
+    // The second triangle, which has no area, puts the origin into the scene's middle.
+    const TriangleMesh mesh = mesh_of({{0, 0, 0}, {1, 1, 1}, {4e-19, 0, 0}, {-1, -1, -1}}, {{0, 1, 2}, {3, 1, 2}});
+    const FlatScene flat = flatten(scene_of({diffuse(mesh)}), 16);
+    REQUIRE(flat.faces.size() == 1);
+    const FaceRecord &face = flat.faces[0];
+    CHECK(std::abs(face.normal[0]) < 1e-6); // the plane holds the x axis and 1 1 1
+    CHECK(std::abs(face.normal[1]) == Approx(std::sqrt(0.5)));
+    CHECK(face.normal[1] == -face.normal[2]);
 }
 
 TEST_CASE("every number of the scene reaches the settings", "[flatten]") {
@@ -123,6 +132,32 @@ TEST_CASE("every number of the scene reaches the settings", "[flatten]") {
     CHECK((s.light_position[0] == 1 && s.light_position[1] == 2 && s.light_energy[0] == 1 && s.light_energy[2] == 4));
     CHECK(s.choices[AXIS_sampler] == CHOICE_sampler_sobol);
     CHECK(s.choices[AXIS_integrator] == CHOICE_integrator_path);
+}
+
+TEST_CASE("A filter reaches no farther than its weights and the image, and gathers no more than can be waited for",
+          "[flatten]") {
+    SceneDescription scene = scene_of({diffuse(one_triangle)});
+    scene.camera.width = 1000;
+    scene.camera.height = 500;
+    scene.camera.crop = {400, 200, 10, 10, 1000, 500};
+    const auto film = [&](const Filter &filter) {
+        scene.camera.filter = filter;
+        return flatten(scene, 8).settings.film;
+    };
+    CHECK(film({FILTER_gaussian, 2, 0.5}).width == 14);
+    CHECK(film({FILTER_gaussian, 1e38, 0.5}).width == film({FILTER_gaussian, 20, 0.5}).width);
+    CHECK(film({FILTER_gaussian, 1e38, 0.5}).width == 10 + 2 * 7); // exp(-7.5^2 / 0.5) is 0 in single precision
+    CHECK(film({FILTER_mitchell, 31.5}).width == 10 + 2 * 31);
+    for (const Filter &wide :
+         {Filter{FILTER_mitchell, 32}, Filter{FILTER_mitchell, 1e38}, Filter{FILTER_gaussian, 1e9, 1e8}}) {
+        scene.camera.filter = wide;
+        scene.camera.filter.place = {"a.xml", 3, 1};
+        CHECK_THAT(test::error_of([&] { flatten(scene, 8); }),
+                   Catch::StartsWith("a.xml:3:1: ") && Catch::EndsWith("possible: a radius up to 31.5"));
+    }
+    scene.camera.width = scene.camera.height = 64; // so few pixels are soon gathered
+    scene.camera.crop = {};
+    CHECK(film({FILTER_mitchell, 1e38}).width == 64);
 }
 
 // The triangles that listed face i stands for: in the slots that the device finds them in, with the corners that it
