@@ -99,8 +99,12 @@ Face make_face(uint first, uint second, TriangleSoup &soup, LargeVector<Triangle
 // Sets the plane of the quadrilateral A B D C: its normal is that of the diagonals, and it goes through the corners'
 // mean. `along` is the mean's distance along the normal as rounded to float, so that the plane goes through it exactly.
 void set_plane(const Point3f (&corners)[4], FaceRecord &face) {
-    const Vec3 n = cross(vec3(corners[3]) - vec3(corners[0]), vec3(corners[2]) - vec3(corners[1])),
-               unit = n * (1 / length(n));
+    const Vec3 to_d = vec3(corners[3]) - vec3(corners[0]), b_to_c = vec3(corners[2]) - vec3(corners[1]);
+    Vec3 n = cross(to_d, b_to_c);
+    constexpr double least_sine = 1e-6; // below, C - B may have lost what tells C from A
+    if (!(length(n) > least_sine * length(to_d) * length(b_to_c)))
+        n = normal_of(corners[0], corners[1], corners[2]);
+    const Vec3 unit = n * (1 / length(n));
     face.normal[0] = float(unit.x), face.normal[1] = float(unit.y), face.normal[2] = float(unit.z);
     double along = 0;
     for (const Point3f &p : corners)

@@ -54,6 +54,12 @@ std::string grid(const LogAxis &x, const LogAxis &y) {
                           "relative mean squared error (less is better)");
 }
 
+// Whether the logarithmic axes have a place for it.
+bool can_be_plotted(const PointSummary &p) {
+    const auto is_good = [](double x) { return x > 0 && std::isfinite(x); };
+    return is_good(p.rel_mse.estimate) && is_good(p.seconds);
+}
+
 std::string curve(const StrategySummary &s, const std::string &color, const LogAxis &x, const LogAxis &y) {
     std::string path, marks;
     for (const PointSummary &p : s.points) {
@@ -89,7 +95,7 @@ std::string convergence_plot(const SweepSummary &summary) {
     double x0 = INFINITY, x1 = 0, y0 = INFINITY, y1 = 0;
     for (const StrategySummary &s : summary.strategies)
         for (const PointSummary &p : s.points)
-            if (p.rel_mse.estimate > 0 && p.seconds > 0) {
+            if (can_be_plotted(p)) {
                 x0 = std::fmin(x0, p.seconds), x1 = std::fmax(x1, p.seconds);
                 y0 = std::fmin(y0, p.rel_mse.estimate), y1 = std::fmax(y1, p.rel_mse.estimate);
             }

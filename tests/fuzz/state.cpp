@@ -23,6 +23,7 @@ SweepRecord small_record() {
     record.scene_hash = "0123456789abcdef";
     record.dialect = "upstream";
     record.clock = "kernel";
+    record.kernel = "special";
     record.definitions = {{"a", "1"}};
     record.devices = {{0, "a device", "a driver"}};
     record.width = record.height = 8;
@@ -34,8 +35,8 @@ SweepRecord small_record() {
         for (const unsigned spp : record.spp)
             strategy.points.push_back(
                 {spp,
-                 {{0, 0.25 * spp, 0.1 / spp, 0.2 / spp, 0.3, 0}, {1, 0.26 * spp, 0.11 / spp, 0.21 / spp, 0.31, 1}}});
-        strategy.shot = {16, 0.5, 0.01, "equal_time_1"};
+                 {{1, 0.25 * spp, 0.1 / spp, 0.2 / spp, 0.3, 0}, {2, 0.26 * spp, 0.11 / spp, 0.21 / spp, 0.31, 1}}});
+        strategy.shot = {16, 0.5, 0.01, "equal_time_" + std::to_string(record.strategies.size())};
     }
     return record;
 }
@@ -45,6 +46,7 @@ std::string record_text() {
     char folder[] = "/tmp/opal_fuzz_XXXXXX";
     require(mkdtemp(folder) != nullptr, "a folder in /tmp");
     save(small_record(), folder);
+    load_record(folder); // throws where this is no record any more, so that the target says so
     const std::string text = read_file(std::filesystem::path(folder) / "sweep.json");
     std::filesystem::remove_all(folder);
     return text;

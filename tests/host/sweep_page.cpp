@@ -113,6 +113,22 @@ TEST_CASE("auto's pilots and a sweep have one ratio where samples are independen
     CHECK(costs[0] / ranking_level == Approx(summary.strategies[0].ranking_time().estimate).epsilon(0.02));
 }
 
+TEST_CASE("The plot leaves out points of infinite or no time or error", "[sweep_page]") {
+    StrategyRecord record;
+    StrategySummary strategy;
+    strategy.record = &record;
+    const stats::Interval error{0.1, 0.05, 0.2};
+    for (const double seconds : {1.0, 4.0, 0.0, double(INFINITY)})
+        strategy.points.push_back({4, 2, seconds, error, error});
+    strategy.points.push_back({4, 2, 1, error, {INFINITY, 0, INFINITY}});
+    const std::string svg = convergence_plot({{strategy}, 0});
+    size_t circles = 0;
+    for (size_t at = svg.find("<title>"); at != svg.npos; at = svg.find("<title>", at + 1))
+        circles++;
+    CHECK(circles == 2);
+    CHECK(svg.find("inf") == svg.npos);
+}
+
 TEST_CASE("The page is one file whose text is escaped", "[sweep_page]") {
     const SweepRecord record = record_of();
     const ScratchFolder folder;
