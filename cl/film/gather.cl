@@ -78,11 +78,17 @@ kernel void gather_around(global const Settings *settings, global const float *s
     uint width = settings->film.width, height = settings->film.height;
     Sum sums[4];
     for (uint c = 0; c < 4; c++) sums[c] = film_load(weighted, at, FILM_WEIGHTED + c, FILM_WEIGHTED_LOW + c);
-    int reach = (int)ceil(settings->filter_radius - 0.5f);
     uints of_film = band_first + at.pixel, x = of_film % width, y = of_film / width;
+    // No more than the film's rows and columns are within reach of these pixels, which are in one row or more.
+    uint first = band_first + at.first, last = band_first + min(at.first + (uint)LANES, at.pixels) - 1u;
+    int top = (int)(first / width), bottom = (int)(last / width);
+    int reach = (int)min(ceil(settings->filter_radius - 0.5f), (float)max(width, height));
+    int left = top == bottom ? (int)(first % width) : 0, right = top == bottom ? (int)(last % width) : (int)width - 1;
+    int up = min(reach, bottom), down = min(reach, (int)height - 1 - top);
+    int to_left = min(reach, right), to_right = min(reach, (int)width - 1 - left);
     for (uint s = 0; s < pass_samples; s++)
-        for (int dy = -reach; dy <= reach; dy++)
-            for (int dx = -reach; dx <= reach; dx++) {
+        for (int dy = -up; dy <= down; dy++)
+            for (int dx = -to_left; dx <= to_right; dx++) {
                 uints nx = x + (uint)dx, ny = y + (uint)dy; // below 0 wraps to far beyond the film
                 mask inside = to_mask(nx < width) & to_mask(ny < height);
                 uints pixel = uints_pick(inside, ny * width + nx, (uints)(0));

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/file_use.h"
+#include "base/memory.h"
 
 #include <fmt/format.h>
 
@@ -70,6 +71,8 @@ std::string refusal(const struct stat &status, bool is_descriptor, Pipes pipes) 
 std::string read_all(const Descriptor &descriptor, const struct stat &status, const fs::path &file) {
     const bool regular = S_ISREG(status.st_mode);
     const size_t size = regular ? size_t(status.st_size) : 0;
+    if (size)
+        check_memory(double(size), file.string() + ": cannot read");
     // One byte more than the size, so that the end is seen without growing. Files of /proc have the size 0.
     std::string bytes(size ? size + 1 : 65536, '\0');
     size_t count = 0;

@@ -47,6 +47,7 @@ std::string BenchSubject::tree_text() const {
 
 nlohmann::json BenchSubject::json() const {
     return object({{"scene", scene.file.string()},
+                   {"scene_hash", scene.hash},
                    {"dialect", name_of(scene.dialect)},
                    {"definitions", scene.definitions},
                    {"device", device.info.name},

@@ -191,6 +191,10 @@ int run(const Options &o) {
     Image image = read_exr(o.image), reference = read_exr(o.reference);
     check_layers(o, image, reference);
     align(o, image, reference);
+    if (const std::string a = image.text("opal.scene_hash"), b = reference.text("opal.scene_hash");
+        !a.empty() && !b.empty() && a != b)
+        note(fmt::format("{} and {} are of different scene files, by opal.scene_hash in their headers", o.image,
+                         o.reference));
     const Crop place = image.place();
     for (const auto &[file, read] : {std::pair(o.image, &image), std::pair(o.reference, &reference)})
         if (const double empty = empty_pixels(*read))

@@ -11,6 +11,7 @@
 #include "flatten/scene_warnings.h"
 #include "render/kernel_choice.h"
 #include "render/report.h"
+#include "scene/filter.h"
 #include "scene/options.h"
 
 #include <fmt/format.h>
@@ -46,13 +47,6 @@ void row(const char *name, fmt::format_string<Arguments...> text, Arguments &&..
 }
 
 std::string color_text(const Color &c) { return fmt::format("{:g} {:g} {:g}", c[0], c[1], c[2]); }
-
-std::string filter_text(const Filter &filter) {
-#define OPAL_NAME(name) #name,
-    static const char *const names[] = {OPAL_FILTERS(OPAL_NAME)};
-#undef OPAL_NAME
-    return fmt::format("{}, radius {:g} pixels", names[filter.kind], filter.radius);
-}
 
 // "3 diffuse, 1 mirror"
 std::string counts_text(const std::map<std::string, size_t> &counts) {
@@ -225,6 +219,7 @@ void print_savings(const InspectOptions &options, const SceneDescription &scene)
 nlohmann::json json_of(const SceneDescription &scene, const FlatScene &flat, int lanes) {
     const Camera &camera = scene.camera;
     nlohmann::json json = object({{"scene", scene.file.string()},
+                                  {"scene_hash", scene.hash},
                                   {"dialect", name_of(scene.dialect)},
                                   {"definitions", scene.definitions},
                                   {"width", camera.width},

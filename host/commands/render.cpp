@@ -240,7 +240,12 @@ int report(const Request &request, RenderedFilm &rendered, const RenderReport &r
     for (const std::string &line : film_warnings(render))
         warn(line);
     Image image = take_image(rendered.film, variance);
+    const ImageFault fault = find_fault(image, render.statistics);
+    if (fault)
+        warn(fault.text());
     nlohmann::json json = render.json();
+    json["invalid_pixels"] = fault.invalid_pixels;
+    json["samples_lost"] = fault.samples_lost;
     const StopReport stop = report_stop(request.rule, rendered.stopped, render);
     if (choice)
         json["auto"] = choice->json();
@@ -271,7 +276,7 @@ int report(const Request &request, RenderedFilm &rendered, const RenderReport &r
     if (!written.errors.empty())
         return exit_failed;
     if (rendered.stopped.complete)
-        return 0;
+        return fault ? exit_failed : exit_done;
     warn(fmt::format("interrupted: the image holds {:.4g} of {} samples a pixel", render.spp(), rendered.stopped.spp));
     return interrupt_exit_code();
 }
@@ -339,7 +344,8 @@ int render_scenes(Options o) {
         forget_warnings();
         o.scene.file = scene;
         try {
-            if (const int code = render_scene(o); code == exit_failed)
+            const int code = render_scene(o);
+            if (code == exit_failed)
                 failed.push_back(scene);
             else if (code != exit_done)
                 return code; // interrupted

@@ -6,7 +6,6 @@
 #include "base/json.h"
 #include "base/log.h"
 #include "base/printable.h"
-#include "base/read_file.h"
 #include "base/signals.h"
 #include "base/table.h"
 #include "base/units.h"
@@ -20,15 +19,18 @@
 #include "render/report.h"
 #include "scene/options.h"
 #include "sweep/convergence_plot.h"
+#include "sweep/lock.h"
 #include "sweep/page.h"
 #include "sweep/run.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <iterator>
 #include <numeric>
 
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -46,21 +48,17 @@ struct Options {
     bool quiet = false;
 };
 
-// The identity of a sweep, by which it is resumed: a hash of the scene's text, its values of -D, its resolved strategy
-// and its meshes.
-std::string hash_of(const SceneDescription &scene) {
-    std::string bytes = read_file(scene.file);
-    bytes += dump(strategy_json(scene));
-    if (!scene.definitions.empty())
-        bytes += dump(scene.definitions);
-    for (const Mesh &mesh : scene.meshes)
-        if (const auto *m = std::get_if<TriangleMesh>(&mesh.shape))
-            bytes.append(reinterpret_cast<const char *>(m->positions.data()), m->positions.size() * sizeof(Vec3));
-    return xxh128(bytes);
+std::string hash_of(const Sources &sources) {
+    FileHashes hashes;
+    for (const auto &[file, text] : sources.files) {
+        hashes.add(file);
+        hashes.add(text);
+    }
+    return hashes.value();
 }
 
-Image read_reference(const std::string &file, const SceneDescription &scene) {
-    Image image = read_exr(file);
+Image read_reference(const std::string &file, const SceneDescription &scene, FileHashes &hashes) {
+    Image image = read_exr(file, &hashes);
     const Crop part = scene.camera.window(), place = image.place();
     if (place != part && place != Crop{0, 0, part.of_width, part.of_height, part.of_width, part.of_height})
         throw Error(fmt::format("--reference {}: has {} pixels, the scene {}", file, text_of(place), text_of(part)));
@@ -90,18 +88,26 @@ std::string kernel_of(const SweepRecord &r, const SceneDescription &scene, const
     return strategy.is_general() ? "general" : "special";
 }
 
-SweepRecord fresh_record(const Options &o, const SceneDescription &scene, const std::vector<DevicePick> &devices) {
+// The record of this sweep before anything is measured. reference_hash: of the file of --reference.
+SweepRecord fresh_record(const Options &o, const SceneDescription &scene, const Sources &sources,
+                         const std::string &reference_hash, const std::vector<DevicePick> &devices) {
     SweepRecord r;
     r.version = OPAL_VERSION;
     r.scene = scene.file.string();
-    r.scene_hash = hash_of(scene);
+    r.scene_hash = scene.hash;
+    r.kernels_hash = hash_of(sources);
     r.dialect = name_of(scene.dialect);
     r.definitions = scene.definitions;
+    for (const StrategyOption &option : strategy_options())
+        r.options[option.name] = option.text(scene.strategy);
+    r.seed = o.seed;
     for (const DevicePick &d : devices)
         r.devices.push_back({d.info.index,
                              d.info.threads ? fmt::format("{}, threads: {}", d.info.name, d.info.threads) : d.info.name,
                              d.info.driver});
     r.reference_file = o.reference;
+    r.reference_hash = reference_hash;
+    r.reference_spp = o.reference_spp;
     r.clock = o.clock;
     r.width = scene.camera.width;
     r.height = scene.camera.height;
@@ -187,6 +193,7 @@ int run_part_apart(SweepPart part, const SweepPlan &plan, const DevicePick &pick
     if (child < 0)
         throw Error("no process could be started for device " + pick.info.name);
     if (child == 0) {
+        prctl(PR_SET_PDEATHSIG, SIGTERM); // so that it ends with its parent
         int code = 1;
         try {
             code = run_part(part, plan, pick, candidates, record);
@@ -217,14 +224,18 @@ int sweep(const Options &o, SceneDescription scene, const std::filesystem::path 
                    .clock = o.clock == "cpu" ? Clock::cpu : Clock::kernel,
                    .sources = &sources};
     Image reference;
+    std::string reference_hash;
     if (!o.reference.empty()) {
-        reference = read_reference(o.reference, scene);
+        FileHashes hashes;
+        reference = read_reference(o.reference, scene, hashes);
+        reference_hash = hashes.value();
         plan.reference = &reference;
     }
     const std::vector<DevicePick> devices = pick_devices(o);
     std::vector<Candidate> candidates = cross(strategies, devices);
-    const SweepRecord fresh = fresh_record(o, scene, devices);
+    const SweepRecord fresh = fresh_record(o, scene, sources, reference_hash, devices);
     make_folder(plan.folder);
+    const FolderLock lock(plan.folder);
     record = resume(plan.folder, fresh);
     for (Candidate &c : candidates) { // all rows at once, as references to them are kept
         record.strategy(c.name, c.label).device = c.device;
@@ -256,6 +267,7 @@ nlohmann::json report_of(const SweepRecord &record, const SweepSummary &summary,
     for (const DeviceRecord &device : record.devices)
         devices.push_back(object({{"name", device.name}, {"driver", device.driver}}));
     return object({{"scene", record.scene},
+                   {"scene_hash", record.scene_hash},
                    {"dialect", record.dialect},
                    {"definitions", record.definitions},
                    {"devices", devices},
@@ -277,6 +289,8 @@ int sweep_values(const Options &o, const std::filesystem::path &folder) {
     Variation variation = load_variation(o.scene, o.vary);
     std::vector<SweepRecord> records(variation.variants.size()); // the summaries refer to them
     std::vector<ValueSweep> sweeps;
+    make_folder(folder);
+    const FolderLock lock(folder);
     for (size_t i = 0; i < records.size(); i++) {
         Variant &variant = variation.variants[i];
         print("{}={}\n", variation.name, variant.value);

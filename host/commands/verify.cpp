@@ -11,6 +11,7 @@
 #include "commands/vary.h"
 #include "compare/agreement.h"
 #include "flatten/features.h"
+#include "image/metrics.h"
 #include "render/kernel_choice.h"
 #include "render/renderer.h"
 
@@ -156,7 +157,7 @@ int verify(const Options &o, SceneDescription scene, const std::filesystem::path
     watch_interrupts();
     std::vector<StrategyRender> renders = render_all(o, strategies, scenes, device, clock);
     for (StrategyRender &render : renders)
-        render.image.metadata["opal.dialect"] = name_of(scene.dialect);
+        render.image.metadata.insert({{"opal.dialect", name_of(scene.dialect)}, {"opal.scene_hash", scene.hash}});
     if (renders.size() < strategies.size()) {
         warn(fmt::format("interrupted after {} of {} strategies: no verdict", renders.size(), strategies.size()));
         return interrupt_exit_code();
@@ -166,9 +167,15 @@ int verify(const Options &o, SceneDescription scene, const std::filesystem::path
             "the budget of {} was exceeded by {:.0f} s: compiling, and {} samples a pixel of each at the least",
             duration_text(o.budget), -clock.left(), least_spp));
 
+    for (const StrategyRender &render : renders)
+        if (const size_t count = invalid_pixels(render.image).count)
+            throw Error(fmt::format("{}: {}: {} pixels of the mean image are NaN or infinite, so that nothing can be "
+                                    "told",
+                                    scene.file.string(), render.how.name, count));
     const Agreement agreement = test_agreement(renders, o.significance);
     report = json_of(agreement, renders);
     report.update(object({{"scene", scene.file.string()},
+                          {"scene_hash", scene.hash},
                           {"dialect", name_of(scene.dialect)},
                           {"definitions", scene.definitions},
                           {"device", pick.info.name},

@@ -3,14 +3,29 @@
 #include "emitters/list.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace opal {
 namespace {
 
 constexpr int random_bits = 24; // of a device's random number
+
+// Weights over the largest one, above 0 where they are: their sum cannot overflow, whatever their scale. Infinite
+// weights are alike and leave nothing for others, those that are NaN are 0; if all are 0, all are alike.
+std::vector<double> relative_weights(std::span<const double> weights) {
+    double largest = 0;
+    for (double weight : weights)
+        largest = std::max(largest, weight); // never NaN
+    std::vector<double> relative;
+    for (double weight : weights)
+        relative.push_back(!(largest > 0)        ? 1.0
+                           : std::isinf(largest) ? double(weight == largest)
+                           : weight > 0          ? std::max(weight / largest, std::numeric_limits<double>::denorm_min())
+                                                 : 0.0);
+    return relative;
+}
 
 // Rounds `accept` up to multiples of 2^-24 and sets each probability to the share of pairs (k1, k2) that lead to the
 // index.
@@ -35,26 +50,22 @@ void set_exact_probabilities(std::span<const double> weights, AliasTable &table)
 
 double drawn_probability(double p) { return std::ldexp(std::ceil(std::ldexp(p, random_bits)), -random_bits); }
 
-AliasTable build_alias_table(std::span<const double> weights) {
+AliasTable build_alias_table(std::span<const double> given) {
+    const std::vector<double> weights = relative_weights(given);
     const std::size_t count = weights.size();
     AliasTable table{std::vector<double>(count), std::vector<double>(count, 1.0), std::vector<uint>(count)};
-    // The sum of weights over the largest one: it cannot overflow, and by Kahan's summation its relative error stays
-    // small for weights over many decades.
-    double largest = 0, sum = 0, lost = 0;
-    for (double weight : weights)
-        largest = std::max(largest, weight);
+    double sum = 0, lost = 0; // by Kahan's summation: its relative error stays small for weights over many decades
     for (double weight : weights) {
-        const double term = weight / largest - lost, next = sum + term;
+        const double term = weight - lost, next = sum + term;
         lost = (next - sum) - term;
         sum = next;
     }
-    assert(count == 0 || (largest > 0 && std::isfinite(sum)));
 
     // Fills up each row with less than its share from a row with more.
     std::vector<double> share(count); // of a row, 1 on average
     std::vector<uint> small, large;
     for (uint i = 0; i < count; i++) {
-        table.probability[i] = weights[i] / largest / sum;
+        table.probability[i] = weights[i] / sum;
         share[i] = table.probability[i] * double(count);
         table.other[i] = i;
         (share[i] < 1 ? small : large).push_back(i);

@@ -22,9 +22,9 @@ struct AliasTable {
 };
 
 // Builds an alias table (Vose 1991, "A linear algorithm for generating random numbers with a given distribution").
-// Weights must be finite and not negative, and one must be positive. An index of weight 0 is never drawn, every other
-// one can be. No weights give an empty table. b is 24, or 32 for more than OPAL_ALIAS_ROWS weights (alias_row on the
-// device).
+// Weights must not be negative. An index of weight 0 is never drawn, every other one can be. Infinite weights are alike
+// and leave nothing for others, NaN counts as 0; if all are 0, all are alike. No weights give an empty table. b is 24,
+// or 32 for more than OPAL_ALIAS_ROWS weights (alias_row on the device).
 AliasTable build_alias_table(std::span<const double> weights);
 
 } // namespace opal

@@ -1,3 +1,5 @@
+#include "base/error.h"
+#include "base/memory.h"
 #include "flatten/camera.h"
 #include "flatten/distribution.h"
 #include "flatten/emitter_kinds.h"
@@ -6,33 +8,55 @@
 #include "flatten/features.h"
 #include "flatten/geometry.h"
 #include "flatten/store.h"
+#include "scene/filter.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <map>
 
 namespace opal {
 namespace {
 
+// Pixels around a pixel, to each side, whose samples the filter weighs into it; at most the image's.
+int filter_reach(const Filter &filter, const Crop &window) {
+    return int(
+        std::ceil(std::clamp<double>(filter_extent(filter) - 0.5, 0, std::max(window.of_width, window.of_height))));
+}
+
 // The crop, and around it the pixels within reach of the filter, as far as the image goes.
-PixelWindow film_window(const Crop &crop, const Settings &settings) {
-    const int reach = std::max(0, int(std::ceil(settings.filter_radius - 0.5f)));
+PixelWindow film_window(const Crop &crop, int reach) {
     const int left = std::max(0, crop.x - reach), top = std::max(0, crop.y - reach);
     const int right = std::min(crop.of_width, crop.x + crop.width + reach),
               bottom = std::min(crop.of_height, crop.y + crop.height + reach);
     return {uint(left), uint(top), uint(right - left), uint(bottom - top)};
 }
 
+// Throws Error at the filter if a pixel would gather the samples of so many others that it takes hours, which nothing
+// interrupts.
+void check_gathered(const Filter &filter, int reach, const PixelWindow &film) {
+    constexpr uint most = 64 * 64;
+    const uint wide = 2 * uint(reach) + 1, columns = std::min(wide, film.width), rows = std::min(wide, film.height);
+    if (columns * std::uint64_t(rows) > most)
+        throw Error(fmt::format("{}: {}: each pixel would gather the samples of {} x {} pixels; possible: a radius up "
+                                "to 31.5",
+                                filter.place.text(), filter_text(filter), columns, rows));
+}
+
 void fill_film(const Camera &camera, Settings &settings) {
     settings.width = uint(camera.width);
     settings.height = uint(camera.height);
     settings.filter = camera.filter.kind;
-    settings.filter_radius = float(camera.filter.radius);
+    settings.filter_radius = float(filter_extent(camera.filter));
     settings.filter_stddev = float(camera.filter.stddev);
     settings.filter_b = float(camera.filter.b);
     settings.filter_c = float(camera.filter.c);
-    settings.film = film_window(camera.window(), settings);
+    const int reach = filter_reach(camera.filter, camera.window());
+    settings.film = film_window(camera.window(), reach);
+    check_gathered(camera.filter, reach, settings.film);
 }
 
 void fill_strategy(const SceneDescription &description, const Flattening &flattening, Settings &settings) {
@@ -131,6 +155,14 @@ void build_acceleration(TriangleSoup &soup, const std::optional<std::vector<Poin
 
 FlatScene flatten(const SceneDescription &description, int lanes, bool with_face_list,
                   const std::function<void(uint)> &on_gathered) {
+    double triangles = 0;
+    for (const Mesh &mesh : description.meshes)
+        if (const auto *shape = std::get_if<TriangleMesh>(&mesh.shape))
+            triangles += double(shape->triangles.size());
+    constexpr double tree_bytes_a_triangle = 60, tree_reserve_a_triangle = 170; // measured, beside the description
+    check_memory(tree_bytes_a_triangle * triangles, tree_reserve_a_triangle * triangles,
+                 fmt::format("the tree of {} triangles", triangles));
+
     FlatScene scene;
     const Extent extent = extent_of(description);
     const Flattening flattening = find_flattening(extent);

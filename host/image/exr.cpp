@@ -327,8 +327,11 @@ std::vector<std::string> zips_blocks(const Image &image, const Imf::Header &head
 
 } // namespace
 
-Image read_exr(const std::filesystem::path &file) {
-    MemoryInput stream(file, read_file(file));
+Image read_exr(const std::filesystem::path &file, FileHashes *hashes) {
+    std::string bytes = read_file(file);
+    if (hashes)
+        hashes->add(bytes);
+    MemoryInput stream(file, std::move(bytes));
     try {
         Imf::MultiPartInputFile input(stream);
         const int part = picture_part(input);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/crop.h"
+#include "base/hash.h"
 
 #include <filesystem>
 #include <map>
@@ -40,7 +41,7 @@ Image cropped(const Image &image, const Crop &part); // the part, which the imag
 // Reads every float and half channel of the part that holds the picture: of several parts the one named rgb, beauty or
 // Combined, else the first with R, G, B. Channels r g b, Y alone and *.Combined.R, .G, .B become R, G, B. Notes tell
 // what was chosen. A data window within a larger display window is a crop, as the attribute opal.crop is.
-Image read_exr(const std::filesystem::path &file);
+Image read_exr(const std::filesystem::path &file, FileHashes *hashes = nullptr); // hashes: gets that of the bytes
 
 // Writes the form that most programs read right (measured): one part of scanlines, float32, ZIPS, both windows from
 // (0, 0), colour space and chromaticities (Rec. 709) as attributes. Names of layers ("variance.R") must not begin with

@@ -251,8 +251,10 @@ std::string wrong_kind_text(const std::filesystem::path &file, const FileKindRow
                        found.advice.empty() ? "" : "; ", advice_for(file, found.advice));
 }
 
-std::string read_text_file(const std::filesystem::path &file, FileKind wanted) {
+std::string read_text_file(const std::filesystem::path &file, FileKind wanted, FileHashes *hashes) {
     std::string text = read_file(file, wanted == FileKind::scene ? Pipes::read : Pipes::refused);
+    if (hashes)
+        hashes->add(text);
     const FileKindRow found = kind_of(text);
     if (found.kind != FileKind::unknown && found.kind != wanted)
         throw Error(wrong_kind_text(file, found, wanted));

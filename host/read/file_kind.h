@@ -2,6 +2,8 @@
 // with the way to convert it.
 #pragma once
 
+#include "base/hash.h"
+
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -32,7 +34,7 @@ FileKindRow kind_of(std::string_view bytes);
 std::string wrong_kind_text(const std::filesystem::path &file, const FileKindRow &found, FileKind wanted);
 
 // All text of a file without its UTF-8 byte order mark. Throws Error: the file cannot be read; it is of another kind
-// than `wanted`; it is UTF-16 or UTF-32; a line ends with a carriage return alone.
-std::string read_text_file(const std::filesystem::path &file, FileKind wanted);
+// than `wanted`; it is UTF-16 or UTF-32; a line ends with a carriage return alone. hashes: gets that of the bytes.
+std::string read_text_file(const std::filesystem::path &file, FileKind wanted, FileHashes *hashes = nullptr);
 
 } // namespace opal

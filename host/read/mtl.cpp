@@ -298,8 +298,8 @@ std::vector<std::string_view> blank_separated(std::string_view text) {
     return words;
 }
 
-std::vector<MtlMaterial> read_mtl(const std::filesystem::path &file) {
-    const std::string text = read_text_file(file, FileKind::mtl);
+std::vector<MtlMaterial> read_mtl(const std::filesystem::path &file, FileHashes *hashes) {
+    const std::string text = read_text_file(file, FileKind::mtl, hashes);
     return MtlReader(file.string(), text).run();
 }
 

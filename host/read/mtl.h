@@ -2,6 +2,7 @@
 // record of absent statements, which decide here; so tinyobjloader's own reader of MTL is not used.
 #pragma once
 
+#include "base/hash.h"
 #include "scene/scene.h"
 
 #include <array>
@@ -33,7 +34,7 @@ std::vector<std::string_view> blank_separated(std::string_view text); // those b
 
 // Reads all materials of a file in its order; of two with one name the first counts, with a warning. Throws Error
 // "file:line:col: ..." for a malformed number, and for a file that is no MTL.
-std::vector<MtlMaterial> read_mtl(const std::filesystem::path &file);
+std::vector<MtlMaterial> read_mtl(const std::filesystem::path &file, FileHashes *hashes = nullptr);
 
 // A material in the words of Blender's Principled BSDF, from which both Blender's exporter and the rules of other
 // programs can be told. Absent statements have the defaults that readers agree on best (scenes/README.md).

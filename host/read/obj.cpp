@@ -56,8 +56,8 @@ template <size_t Count> bool holds(const std::string_view (&list)[Count], std::s
 // never, the faces are read again once all elements are known.
 class ObjReader : public ObjStatements {
 public:
-    ObjReader(const std::filesystem::path &file, const Transform &to_world)
-        : ObjStatements(file), file_(file.string()), to_world_(to_world) {}
+    ObjReader(const std::filesystem::path &file, const Transform &to_world, FileHashes *hashes)
+        : ObjStatements(file, hashes), file_(file.string()), to_world_(to_world) {}
 
     void read();
     ObjFile finish() &&;
@@ -362,8 +362,8 @@ ObjFile ObjReader::finish() && {
 
 } // namespace
 
-ObjFile read_obj(const std::filesystem::path &file, const Transform &to_world) {
-    ObjReader reader(file, to_world);
+ObjFile read_obj(const std::filesystem::path &file, const Transform &to_world, FileHashes *hashes) {
+    ObjReader reader(file, to_world, hashes);
     reader.read();
     return std::move(reader).finish();
 }

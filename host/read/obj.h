@@ -2,6 +2,7 @@
 // polygons of any size. host/README.md says why, and a test shows which of the library's habits remain.
 #pragma once
 
+#include "base/hash.h"
 #include "scene/place.h"
 #include "scene/shapes.h"
 #include "shared/types.h"
@@ -41,7 +42,7 @@ struct ObjFile {
 // of a file without triangles, of `vt` and `vn` that are not finite, and of indices of them that are 0 or past the end:
 // corners that name these have none. Notes statements and numbers that it ignores. Throws Error "file:line:col: ..."
 // for any other bad number or index, and for text that has no statement of an OBJ file.
-ObjFile read_obj(const std::filesystem::path &file, const Transform &to_world);
+ObjFile read_obj(const std::filesystem::path &file, const Transform &to_world, FileHashes *hashes = nullptr);
 
 // Triangles of a polygon, as indices of corners, by ear clipping (Meisters 1975) in the plane of its Newell normal. A
 // convex polygon becomes the fan around its first corner, as in Nori. Always gives corners - 2 triangles. Error: more

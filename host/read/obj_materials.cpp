@@ -58,13 +58,13 @@ std::vector<fs::path> files_of(const ObjLibrary &library, const fs::path &obj) {
     return files;
 }
 
-Materials read_libraries(const ObjFile &obj, const fs::path &file) {
+Materials read_libraries(const ObjFile &obj, const fs::path &file, FileHashes *hashes) {
     Materials materials;
     std::set<fs::path> known; // a library may be named before each object
     for (const ObjLibrary &library : obj.libraries)
         for (const fs::path &path : files_of(library, file))
             if (known.insert(path).second)
-                for (MtlMaterial &material : read_mtl(path)) {
+                for (MtlMaterial &material : read_mtl(path, hashes)) {
                     materials.full_names.try_emplace(without_comment(material.name), material.name);
                     materials.by_name.try_emplace(material.name, material);
                 }
@@ -130,8 +130,8 @@ void add_surface(const MtlMaterial &material, const ObjMaterialOptions &options,
 
 } // namespace
 
-std::vector<Mesh> meshes_by_material(ObjFile &&obj, const fs::path &file, const Mesh &mesh,
-                                     ObjMaterialOptions options) {
+std::vector<Mesh> meshes_by_material(ObjFile &&obj, const fs::path &file, const Mesh &mesh, ObjMaterialOptions options,
+                                     FileHashes *hashes) {
     std::vector<Mesh> meshes;
     const Parts parts = parts_of(obj);
     if (parts.materials.empty()) { // no `usemtl`
@@ -139,7 +139,7 @@ std::vector<Mesh> meshes_by_material(ObjFile &&obj, const fs::path &file, const 
         meshes.back().shape = std::move(obj.mesh);
         return meshes;
     }
-    const Materials materials = read_libraries(obj, file);
+    const Materials materials = read_libraries(obj, file, hashes);
     std::vector<TriangleMesh> shapes;
     if (parts.materials.size() == 1)
         shapes.push_back(std::move(obj.mesh));

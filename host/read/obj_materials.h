@@ -15,7 +15,7 @@ struct ObjMaterialOptions {
 // is that of `mesh`. Libraries are looked for beside the OBJ file. Warns of libraries and materials that are missing
 // and, a line a material, of what Opal does not render.
 std::vector<Mesh> meshes_by_material(ObjFile &&obj, const std::filesystem::path &file, const Mesh &mesh,
-                                     ObjMaterialOptions options);
+                                     ObjMaterialOptions options, FileHashes *hashes = nullptr);
 
 // Warns where a file has materials: Nori ignores them. Counts what is unused.
 void warn_of_unused_materials(const ObjFile &obj, const std::filesystem::path &file);

@@ -59,8 +59,8 @@ int parse_index(std::string_view word) {
 
 } // namespace
 
-ObjStatements::ObjStatements(const std::filesystem::path &file)
-    : file_(file), text_(read_text_file(file, FileKind::obj)), can_be_read_again_(is_regular_file(file)) {}
+ObjStatements::ObjStatements(const std::filesystem::path &file, FileHashes *hashes)
+    : file_(file), text_(read_text_file(file, FileKind::obj, hashes)), can_be_read_again_(is_regular_file(file)) {}
 
 void ObjStatements::free_text() { free_memory(text_); }
 

@@ -2,6 +2,7 @@
 // that the library reads right.
 #pragma once
 
+#include "base/hash.h"
 #include "scene/place.h"
 
 #include <array>
@@ -29,7 +30,7 @@ struct ObjTally {
 // "file:line:col: ..." for a malformed number or index, and those of read_text_file.
 class ObjStatements : public std::streambuf {
 public:
-    explicit ObjStatements(const std::filesystem::path &file);
+    ObjStatements(const std::filesystem::path &file, FileHashes *hashes);
 
 protected:
     virtual void take_other() = 0; // a statement that is none of these four

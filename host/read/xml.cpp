@@ -28,6 +28,11 @@ std::string_view without_mark(std::string &text) {
     return text;
 }
 
+// How many characters of UTF-8 begin in the text.
+int characters(std::string_view text) {
+    return int(std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
 bool is_text(pugi::xml_node node) { return node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata; }
 
 // The child elements of a node. Text that is not blank is a mistake.
@@ -64,21 +69,26 @@ SourcePlace place_in(const std::string &file, std::string_view text, ptrdiff_t o
     auto end = text.begin() + std::clamp<ptrdiff_t>(offset, 0, ptrdiff_t(text.size()));
     auto line = std::count(text.begin(), end, '\n');
     auto start = std::find(std::make_reverse_iterator(end), text.rend(), '\n').base();
-    auto column = std::count_if(start, end, [](char c) { return (c & 0xc0) != 0x80; });
-    return {file, int(line) + 1, int(column) + 1};
+    return {file, int(line) + 1, characters({start, end}) + 1};
 }
 
-TextLines::TextLines(std::string file, std::string_view text) : file_(std::move(file)), text_(text), starts_{0} {
-    for (size_t at = text.find('\n'); at != text.npos; at = text.find('\n', at + 1))
-        starts_.push_back(at + 1);
+TextLines::TextLines(std::string file, std::string_view text) : file_(std::move(file)), text_(text), marks_{{0, 1, 1}} {
+    constexpr size_t apart = 1024; // so that a file that is one long line has places in little time, too
+    for (size_t at = 0; at < text.size();) {
+        const std::string_view next = text.substr(at, apart);
+        const size_t end = at + std::min(next.find('\n'), next.size());
+        const bool is_end = end < text.size() && text[end] == '\n';
+        const Mark &last = marks_.back();
+        marks_.push_back(is_end ? Mark{end + 1, last.line + 1, 1}
+                                : Mark{end, last.line, last.column + characters(text.substr(at, end - at))});
+        at = marks_.back().offset;
+    }
 }
 
 SourcePlace TextLines::place(ptrdiff_t offset) const {
     const size_t end = size_t(std::clamp<ptrdiff_t>(offset, 0, ptrdiff_t(text_.size())));
-    const auto line = std::upper_bound(starts_.begin(), starts_.end(), end) - 1;
-    SourcePlace place = place_in(file_, text_.substr(*line), ptrdiff_t(end - *line));
-    place.line = int(line - starts_.begin()) + 1;
-    return place;
+    const Mark &mark = *(std::ranges::upper_bound(marks_, end, {}, &Mark::offset) - 1);
+    return {file_, mark.line, mark.column + characters(text_.substr(mark.offset, end - mark.offset))};
 }
 
 SourcePlace XmlNode::place() const { return document_->place(node_.offset_debug() - 1); }
@@ -89,6 +99,9 @@ std::vector<XmlNode> XmlNode::children(const MistakeHandler &mistake) const {
 
 void XmlNode::require_attributes(std::initializer_list<const char *> names, const MistakeHandler &mistake,
                                  const AttributeHandler &unknown) const {
+    constexpr ptrdiff_t most_attributes = 1000; // each is looked for among all
+    if (const auto all = node_.attributes(); std::distance(all.begin(), all.end()) > most_attributes)
+        fail(fmt::format("<{}> has more than {} attributes", tag(), most_attributes));
     const std::vector<std::string> known(names.begin(), names.end());
     std::set<std::string> seen;
     for (pugi::xml_attribute attribute : node_.attributes()) {
@@ -109,8 +122,8 @@ void XmlNode::require_attributes(std::initializer_list<const char *> names, cons
 
 void XmlNode::fail(const std::string &message) const { throw XmlError(place(), message); }
 
-XmlDocument::XmlDocument(const std::filesystem::path &file)
-    : XmlDocument(file, read_text_file(file, FileKind::scene)) {}
+XmlDocument::XmlDocument(const std::filesystem::path &file, FileHashes *hashes)
+    : XmlDocument(file, read_text_file(file, FileKind::scene, hashes)) {}
 
 XmlDocument::XmlDocument(const std::filesystem::path &file, std::string text)
     : text_(std::move(text)), lines_(file.string(), without_mark(text_)) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "scene/place.h"
 
 #include <pugixml.hpp>
@@ -40,16 +41,20 @@ using Definitions = std::map<std::string, std::string>;
 // Letters, digits and '_', with no digit first.
 bool is_definable(std::string_view name);
 
-// The lines of a text, found once: a place is then found in logarithmic time, so that files of 1e5 objects load.
+// The places of a text, marked once: one is then found in logarithmic time, so that files of 1e5 objects load.
 class TextLines {
 public:
     TextLines(std::string file, std::string_view text); // the text must outlive this
     SourcePlace place(ptrdiff_t offset) const;          // as place_in
 
 private:
+    struct Mark { // at each line's start, and now and then within a long one
+        size_t offset;
+        int line, column;
+    };
     std::string file_;
     std::string_view text_;
-    std::vector<size_t> starts_; // of each line
+    std::vector<Mark> marks_;
 };
 
 class XmlDocument;
@@ -78,7 +83,7 @@ private:
 class XmlDocument {
 public:
     // Reads and parses a file. Throws Error at the place of the first mistake.
-    explicit XmlDocument(const std::filesystem::path &file);
+    explicit XmlDocument(const std::filesystem::path &file, FileHashes *hashes = nullptr);
     // Parses `text`; errors name `file`.
     XmlDocument(const std::filesystem::path &file, std::string text);
     XmlDocument(const XmlDocument &) = delete;

@@ -1,5 +1,6 @@
 #include "render/renderer.h"
 
+#include "base/memory.h"
 #include "base/progress.h"
 #include "device/program.h"
 #include "device/scene_buffers.h"
@@ -13,6 +14,7 @@
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
+#include <thread>
 
 namespace opal {
 
@@ -24,6 +26,10 @@ constexpr unsigned long long max_sample_buffer_bytes = 256ull << 20,
                              max_buffer_samples = (1ull << 32) / OPAL_SAMPLE_FLOATS;
 // CPU: the film and the samples of a pass take about so many bytes a pixel. Small images may take more.
 constexpr unsigned long long cpu_bytes_a_pixel = 120, small_sample_buffer_bytes = 64ull << 20;
+
+// The memory of a pixel when the film is read and the image written: double sums, layers and files, as the device's
+// film is freed band by band; measured. Each thread that writes reserves a heap and a stack.
+constexpr double host_bytes_a_pixel = 72, host_bytes_a_wide_pixel = 104, bytes_a_writer = 72 << 20;
 
 // Pixels of a band of the film, whose sums are a buffer of 29 MB. PoCL compiles kernels apart for launches of more than
 // 65535 work-groups: at 8 lanes a band has no more, so images of all sizes share one compilation.
@@ -96,6 +102,11 @@ Renderer::Renderer(const Device &device, FlatScene scene, const RenderOptions &o
       pixels_(size_t(scene.settings.film.width) * scene.settings.film.height),
       wide_filter_(is_wide_filter(scene.settings)), endless_paths_(scene.features[FEATURE_endless_paths]),
       on_device_(std::make_unique<OnDevice>()) {
+    const std::string what = fmt::format("{} x {} pixels", settings_.film.width, settings_.film.height);
+    if (pixels_ > max_buffer_samples)
+        throw Error(fmt::format("an image of {}: possible are {:.4g} pixels at the most, as kernels count their "
+                                "samples by 32 bits",
+                                what, double(max_buffer_samples)));
     shape_ = launch_shape();
     const unsigned long long film_bytes =
         4ull * (FILM_PLANES + 1 + (wide_filter_ ? FILM_WEIGHTED_PLANES : 0)); // of a pixel; the 1 is its count
@@ -105,8 +116,18 @@ Renderer::Renderer(const Device &device, FlatScene scene, const RenderOptions &o
         bytes = std::min(bytes, std::max(small_sample_buffer_bytes, pixels_ * (cpu_bytes_a_pixel - film_bytes)));
     buffer_spp_ = unsigned(
         std::clamp<unsigned long long>(bytes / sample_bytes / pixels_, 1, 1ull * max_samples_a_chunk * max_chunks));
-    check_room(device, pixels_ * (film_bytes + sample_bytes * buffer_spp_),
-               fmt::format("the film of {} x {} pixels and its samples", settings_.film.width, settings_.film.height));
+    const unsigned long long device_bytes = pixels_ * (film_bytes + sample_bytes * buffer_spp_);
+    check_room(device, device_bytes, fmt::format("the film of {} and its samples", what));
+    // The host's memory at its peak, which comes when the film is read and the image written.
+    const double read_bytes = double(pixels_) * (wide_filter_ ? host_bytes_a_wide_pixel : host_bytes_a_pixel);
+    const Film film;
+    const size_t film_pixel = sizeof film.sum[0] + sizeof film.squares[0] + sizeof film.count[0] +
+                              (wide_filter_ ? sizeof film.weighted[0] : 0);
+    const double reserved = double(pixels_ * film_pixel) + bytes_a_writer * std::thread::hardware_concurrency();
+    const bool shared = shares_memory(device);
+    check_memory(shared ? std::max(read_bytes, double(device_bytes)) : read_bytes,
+                 shared ? std::max(reserved + double(pixels_ * film_bytes), double(device_bytes)) : reserved,
+                 fmt::format("an image of {}", what));
 
     const RunningProgress compiling("compile");
     double film_seconds = 0;

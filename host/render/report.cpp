@@ -5,11 +5,13 @@
 #include "base/log.h"
 #include "base/printable.h"
 #include "base/values.h"
+#include "image/metrics.h"
 #include "scene/options.h"
 #include "stats/special.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -68,6 +70,7 @@ nlohmann::json RenderReport::json() const {
     const FilmStatistics &s = statistics;
     nlohmann::json j;
     j["scene"] = scene.file.string();
+    j["scene_hash"] = scene.hash;
     j["dialect"] = name_of(scene.dialect);
     j["definitions"] = scene.definitions;
     j["device"] = device.name;
@@ -157,6 +160,22 @@ nlohmann::json StopReport::json() const {
     if (by_error)
         j.update(object({{"met", met}, {"pilot_spp", stopped.pilot_spp}, {"pilot_seconds", stopped.pilot_seconds}}));
     return j;
+}
+
+ImageFault find_fault(const Image &image, const FilmStatistics &s) {
+    bool black = true;
+    for (const char *channel : {"R", "G", "B"})
+        black = black && std::ranges::all_of(image.get(channel).values, [](float value) { return value == 0; });
+    const bool samples_black = s.samples > 0 ? s.mean_rgb == std::array<double, 3>{} : s.invalid == 0;
+    return {invalid_pixels(image).count, black && !samples_black};
+}
+
+std::string ImageFault::text() const {
+    if (invalid_pixels > 0)
+        return fmt::format("{} pixels of the image are NaN or infinite: their radiances or weights are beyond single "
+                           "precision",
+                           invalid_pixels);
+    return samples_lost ? "the image is black although its samples are not" : "";
 }
 
 std::vector<std::string> film_warnings(const RenderReport &render) {

@@ -54,6 +54,16 @@ struct StopReport {
 };
 StopReport report_stop(const StopRule &rule, const StopResult &stopped, const RenderReport &render);
 
+// What is wrong with an image although samples were rendered: a render that has such a fault has failed.
+struct ImageFault {
+    size_t invalid_pixels = 0; // NaN or infinite
+    bool samples_lost = false; // all is black, although the samples are not or are not finite
+
+    explicit operator bool() const { return invalid_pixels > 0 || samples_lost; }
+    std::string text() const; // empty where there is none
+};
+ImageFault find_fault(const Image &image, const FilmStatistics &statistics);
+
 // What the image lacks: invalid samples, pixels without one.
 std::vector<std::string> film_warnings(const RenderReport &render);
 

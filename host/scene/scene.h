@@ -65,6 +65,7 @@ struct Filter {
     int kind = FILTER_box;
     double radius = 0.5, stddev = 0.5, b = 1.0 / 3, c = 1.0 / 3;
     bool given = false; // false: the default of the dialect
+    SourcePlace place{};
 };
 
 struct Camera {
@@ -96,6 +97,7 @@ struct SimpleLight { // the one light of integrator `simple`
 
 struct SceneDescription {
     std::filesystem::path file;
+    std::string hash; // of all files that were read (FileHashes): the scene's, then OBJ files, each with its libraries
     Camera camera;
     std::vector<Mesh> meshes;
     std::vector<Light> lights;                // beside the meshes that emit

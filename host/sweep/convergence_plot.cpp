@@ -57,7 +57,7 @@ std::string grid(const LogAxis &x, const LogAxis &y) {
 std::string curve(const StrategySummary &s, const std::string &color, const LogAxis &x, const LogAxis &y) {
     std::string path, marks;
     for (const PointSummary &p : s.points) {
-        if (!(p.rel_mse.estimate > 0))
+        if (!(p.rel_mse.estimate > 0 && p.seconds > 0))
             continue;
         const double px = x(p.seconds), py = y(p.rel_mse.estimate);
         path += fmt::format("{}{:.1f} {:.1f} ", path.empty() ? "M" : "L", px, py);
@@ -89,7 +89,7 @@ std::string convergence_plot(const SweepSummary &summary) {
     double x0 = INFINITY, x1 = 0, y0 = INFINITY, y1 = 0;
     for (const StrategySummary &s : summary.strategies)
         for (const PointSummary &p : s.points)
-            if (p.rel_mse.estimate > 0) {
+            if (p.rel_mse.estimate > 0 && p.seconds > 0) {
                 x0 = std::fmin(x0, p.seconds), x1 = std::fmax(x1, p.seconds);
                 y0 = std::fmin(y0, p.rel_mse.estimate), y1 = std::fmax(y1, p.rel_mse.estimate);
             }

@@ -106,6 +106,8 @@ std::string strategy_table(const SweepSummary &summary) {
 }
 
 std::string embedded_png(const std::filesystem::path &png, const std::string &what) {
+    if (!is_whole_picture(png))
+        return fmt::format("<p>{}: the picture is missing; a sweep with this strategy makes it again</p>", what);
     return fmt::format("<div class='lens'><img alt=\"{}\" title=\"{}\" src=\"data:image/png;base64,{}\"></div>", what,
                        what, base64(read_file(png)));
 }

@@ -55,12 +55,17 @@ struct ReferenceRecord {
     double mean_luminance = 0, stderr_luminance = 0;
     bool variance_known = false;
     double mean_square = 0; // over pixels and R, G, B, the scale of an MSE
+    std::string hash{};     // FileHashes of reference.exr; empty for a given file
 };
 
 struct SweepRecord {
     // A run that continues a sweep must agree in these.
     std::string version, scene, scene_hash, dialect, reference_file, clock; // clock: kernel or cpu
+    std::string kernels_hash, reference_hash;                               // of the kernels' sources, of the file
     std::map<std::string, std::string> definitions;                         // of the scene
+    std::map<std::string, std::string> options; // of the scene's strategy, by their names on the command line
+    unsigned seed = 0;                          // replicate r of each point, from 0 on, has seed + 1 + r
+    unsigned reference_spp = 0;                 // that was asked for; 0: the default
     std::vector<DeviceRecord> devices;
     int width = 0, height = 0; // of the whole image
     std::string crop;          // the part that is rendered, in words; empty: all
@@ -78,11 +83,14 @@ struct SweepRecord {
     StrategyRecord &strategy(const std::string &name, const std::string &label); // appended if it is new
 };
 
-// Reads sweep.json in the folder. Throws Error if it is no record.
+// Reads sweep.json in the folder and checks it. Throws Error with the key and what is wrong if it is no record that
+// could be continued. Points without replicates are left out.
 SweepRecord load_record(const std::filesystem::path &folder);
 // The record in the folder with the options of `fresh`, or `fresh` if there is none. Throws Error with the difference
 // if the folder holds another sweep.
 SweepRecord resume(const std::filesystem::path &folder, const SweepRecord &fresh);
+// Whether a PNG or EXR is there and has its end. Throws Error if it is there and cannot be read.
+bool is_whole_picture(const std::filesystem::path &file);
 // Writes sweep.json safely. A finished sweep adds its summary, which a later run does not read.
 void save(const SweepRecord &record, const std::filesystem::path &folder);
 void save(const SweepRecord &record, const std::filesystem::path &folder, const nlohmann::json &summary);

@@ -1,8 +1,10 @@
 #include "sweep/run.h"
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "base/log.h"
 #include "base/progress.h"
+#include "render/report.h"
 #include "strategies/combinations.h"
 #include "sweep/reference.h"
 
@@ -50,8 +52,8 @@ public:
 
     void render_equal_time_images() {
         progress_.emplace("images");
-        if (reference_.layers.empty())
-            read_reference();
+        if (reference_.layers.empty() && !read_reference())
+            throw Error(reference_file().string() + ": is not there as it was written");
         for (size_t i = 0; i < candidates_.size(); i++) {
             render_equal_time_image(i);
             compiled_[i].reset();
@@ -60,6 +62,9 @@ public:
     }
 
 private:
+    void note_scene(Image &image) const {
+        image.metadata.insert({{"opal.dialect", record_.dialect}, {"opal.scene_hash", record_.scene_hash}});
+    }
     StrategyRecord &record_of(const Candidate &c) { return record_.strategy(c.name, c.label); }
     const StrategyRecord &best() { return record_of(candidates_[best_]); }
     void save_record() { save(record_, plan_.folder); }
@@ -105,7 +110,8 @@ private:
         }
         const std::vector<double> costs = pilot_costs(all);
         for (size_t i = 0; i < costs.size(); i++)
-            record_of(candidates_[i]).pilot_cost = std::fmax(costs[i], 1e-30); // 0 means that there is no pilot yet
+            record_of(candidates_[i]).pilot_cost =
+                std::isfinite(costs[i]) ? std::fmax(costs[i], 1e-30) : 1e300; // 0 means that there is no pilot yet
         save_record();
     }
 
@@ -177,7 +183,29 @@ private:
 
     std::filesystem::path reference_file() const { return plan_.folder / "reference.exr"; }
 
-    void read_reference() { reference_ = plan_.reference ? *plan_.reference : read_exr(reference_file()); }
+    // Renders an image of the sweep. Throws Error if no error could be measured with it.
+    static CompiledStrategy::RenderResult render(CompiledStrategy &strategy, const std::string &label, unsigned spp,
+                                                 unsigned seed, unsigned first = 0) {
+        CompiledStrategy::RenderResult r = strategy.render(spp, seed, first);
+        if (const ImageFault fault = find_fault(r.image, statistics_of(r.film)))
+            throw Error(fmt::format("{}: {}; its error cannot be measured", label, fault.text()));
+        return r;
+    }
+
+    // Reads the reference that was given or rendered before. False: it is not there as it was written.
+    bool read_reference() {
+        if (plan_.reference) {
+            reference_ = *plan_.reference;
+            return true;
+        }
+        FileHashes hashes;
+        try {
+            reference_ = read_exr(reference_file(), &hashes);
+        } catch (const Error &) {
+            return false;
+        }
+        return hashes.value() == record_.reference.hash;
+    }
 
     // The strategy that renders the reference: the best, with independent samples, and without fast math, which is
     // itself measured against the reference. It is compiled into `own` unless it is a candidate.
@@ -198,33 +226,48 @@ private:
         if (plan_.reference) {
             read_reference();
             r = {record_.reference_file, 0, 0, mean_luminance(reference_), 0, reference_.find("variance.R") != nullptr};
-        } else if (!r.made_by.empty() && std::filesystem::exists(reference_file())) {
-            read_reference();
+        } else if (!r.made_by.empty() && read_reference()) {
             if (r.spp < 2 * record_.spp.back())
                 warn(fmt::format("the reference of the sweep that is continued has {} samples per pixel only", r.spp));
         } else {
+            const ReferenceRecord before = r; // that the replicates were measured with, if any
+            if (!before.made_by.empty()) {
+                warn(fmt::format("{}: is missing or was changed; it is rendered again", reference_file().string()));
+                best_ = size_t(std::ranges::find(candidates_, before.made_by, &Candidate::name) - candidates_.begin());
+                if (best_ == candidates_.size())
+                    throw Error(fmt::format("{}: only strategy {}, which is not among these, can render it again",
+                                            reference_file().string(), before.made_by));
+            }
             std::optional<CompiledStrategy> own;
             CompiledStrategy &strategy = reference_strategy(own);
-            const unsigned half = (reference_spp() + 1) / 2;
+            const unsigned half = ((before.made_by.empty() ? reference_spp() : before.spp) + 1) / 2;
             const auto begun = std::chrono::steady_clock::now();
-            const auto a = strategy.render(half, plan_.seed, first_reference_sample_a),
-                       b = strategy.render(half, plan_.seed, first_reference_sample_b);
+            const auto a = render(strategy, best().label, half, plan_.seed, first_reference_sample_a),
+                       b = render(strategy, best().label, half, plan_.seed, first_reference_sample_b);
             const FilmStatistics sa = statistics_of(a.film), sb = statistics_of(b.film);
             reference_ = reference_from_halves(a.image, b.image);
             reference_.crop = a.image.crop;
-            reference_.metadata["opal.dialect"] = record_.dialect;
-            write_exr(reference_, reference_file());
+            note_scene(reference_);
+            const std::string bytes = exr_bytes(reference_);
+            FileHashes hashes;
+            hashes.add(bytes);
+            if (!before.made_by.empty() && hashes.value() != before.hash)
+                throw Error(reference_file().string() +
+                            ": cannot be rendered again as it was; give another folder with -o");
+            write_safely(reference_file(), bytes);
             r = {best().name,
                  2 * half,
                  a.seconds + b.seconds,
                  (sa.mean_luminance + sb.mean_luminance) / 2,
                  std::hypot(sa.stderr_luminance, sb.stderr_luminance) / 2,
-                 true};
+                 true,
+                 0,
+                 hashes.value()};
             info(fmt::format("reference by {}: {} samples per pixel, {:.3g} s", best().label, r.spp, r.seconds));
             count_render(begun, r.spp * best().pilot_seconds_a_sample);
         }
         r.mean_square = mean_square(reference_);
-        if (!std::filesystem::exists(plan_.folder / "reference.png"))
+        if (!is_whole_picture(plan_.folder / "reference.png"))
             write_png(reference_, plan_.folder / "reference.png");
         save_record();
     }
@@ -240,7 +283,7 @@ private:
                 const unsigned seed = plan_.seed + round;
                 CompiledStrategy &strategy = compiled(i);
                 const auto begun = std::chrono::steady_clock::now();
-                const CompiledStrategy::RenderResult r = strategy.render(spp, seed);
+                const CompiledStrategy::RenderResult r = render(strategy, record_of(candidates_[i]).label, spp, seed);
                 const ImageError error = error_against(reference_, r.image);
                 replicates.push_back(
                     {seed, r.seconds, error.mse, error.rel_mse, statistics_of(r.film).mean_luminance, r.film.invalid});
@@ -282,21 +325,22 @@ private:
             plan_.folder / ("equal_time_" + std::to_string(&s - record_.strategies.data() + 1));
         const std::array files = {stem.string() + ".exr", stem.string() + ".png", stem.string() + "_error.png"};
         if (s.shot.spp > 0 && is_equal(s.shot.seconds) &&
-            std::ranges::all_of(files, [](const std::string &file) { return std::filesystem::exists(file); }))
+            std::ranges::all_of(files, [](const std::string &file) { return is_whole_picture(file); }))
             return;
         CompiledStrategy &strategy = compiled(candidate);
         CompiledStrategy::RenderResult r;
         unsigned spp = s.points.back().spp;
         double seconds = s.points.back().replicates[0].seconds;
         for (unsigned run = 0; run <= equal_time_reruns && !(run > 0 && is_equal(seconds)); run++) {
-            const unsigned next = unsigned(std::fmax(1, std::round(spp * wanted / seconds)));
+            const double ratio = seconds > 0 ? wanted / seconds : 1;
+            const unsigned next = unsigned(std::clamp(std::round(spp * ratio), 1.0, double(first_pilot_sample)));
             if (run > 0 && next == spp)
                 break;
             spp = next;
-            r = strategy.render(spp, plan_.seed + 1);
+            r = render(strategy, s.label, spp, plan_.seed + 1);
             seconds = r.seconds;
         }
-        r.image.metadata["opal.dialect"] = record_.dialect;
+        note_scene(r.image);
         write_exr(r.image, files[0]);
         write_png(r.image, files[1]);
         write_png(error_map(reference_, r.image), files[2]);

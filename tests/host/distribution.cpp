@@ -116,3 +116,26 @@ TEST_CASE("the error of a wrong alias table is seen", "[distribution]") {
 }
 
 TEST_CASE("no weights, no rows", "[distribution]") { CHECK(build_alias_table({}).accept.empty()); }
+
+TEST_CASE("Weights of any scale give a table: tiny, huge, infinite, NaN and all zero", "[distribution]") {
+    const double inf = INFINITY, nan = NAN, tiny = 5e-324;
+    const std::vector<std::pair<std::vector<double>, std::vector<double>>> cases = {
+        {{1e300, 3e300}, {1, 3}},      {{1.7e308, 1.7e308, 1.7e308}, {1, 1, 1}},
+        {{tiny, 3 * tiny}, {1, 3}},    {{1e-320, 0, 1e-320}, {1, 0, 1}},
+        {{0, 0, 0}, {1, 1, 1}},        {{inf, 1, inf}, {1, 0, 1}},
+        {{nan, 2, 6}, {0, 1, 3}},      {{nan, nan}, {1, 1}},
+        {{nan, inf, 1e300}, {0, 1, 0}}};
+    for (const auto &[weights, meant] : cases) {
+        const AliasTable table = build_alias_table(weights);
+        CHECK(near(table, meant));
+        const std::vector<double> probabilities = drawn(table);
+        for (std::size_t i = 0; i < weights.size(); i++) {
+            CHECK(table.probability[i] == probabilities[i]);
+            CHECK((probabilities[i] > 0) == (meant[i] > 0));
+            CHECK(table.other[i] < weights.size());
+        }
+    }
+    const AliasTable far = build_alias_table(std::vector<double>{1e-300, 1e300}); // none is lost
+    CHECK(drawn(far)[0] > 0);
+    CHECK(drawn(far)[0] < 1e-6);
+}

@@ -2,6 +2,7 @@
 #include "base/log.h"
 #include "flatten/geometry.h"
 #include "read/nori/load.h"
+#include "support/error_of.h"
 #include "support/plain_scenes.h"
 
 #include <catch2/catch.hpp>
@@ -110,6 +111,32 @@ TEST_CASE("every number of the scene reaches the settings", "[flatten]") {
     CHECK((s.light_position[0] == 1 && s.light_position[1] == 2 && s.light_energy[0] == 1 && s.light_energy[2] == 4));
     CHECK(s.choices[AXIS_sampler] == CHOICE_sampler_sobol);
     CHECK(s.choices[AXIS_integrator] == CHOICE_integrator_path);
+}
+
+TEST_CASE("A filter reaches no farther than its weights and the image, and gathers no more than can be waited for",
+          "[flatten]") {
+    SceneDescription scene = scene_of({diffuse(one_triangle)});
+    scene.camera.width = 1000;
+    scene.camera.height = 500;
+    scene.camera.crop = {400, 200, 10, 10, 1000, 500};
+    const auto film = [&](const Filter &filter) {
+        scene.camera.filter = filter;
+        return flatten(scene, 8).settings.film;
+    };
+    CHECK(film({FILTER_gaussian, 2, 0.5}).width == 14);
+    CHECK(film({FILTER_gaussian, 1e38, 0.5}).width == film({FILTER_gaussian, 20, 0.5}).width);
+    CHECK(film({FILTER_gaussian, 1e38, 0.5}).width == 10 + 2 * 7); // exp(-7.5^2 / 0.5) is 0 in single precision
+    CHECK(film({FILTER_mitchell, 31.5}).width == 10 + 2 * 31);
+    for (const Filter &wide :
+         {Filter{FILTER_mitchell, 32}, Filter{FILTER_mitchell, 1e38}, Filter{FILTER_gaussian, 1e9, 1e8}}) {
+        scene.camera.filter = wide;
+        scene.camera.filter.place = {"a.xml", 3, 1};
+        CHECK_THAT(test::error_of([&] { flatten(scene, 8); }),
+                   Catch::StartsWith("a.xml:3:1: ") && Catch::EndsWith("possible: a radius up to 31.5"));
+    }
+    scene.camera.width = scene.camera.height = 64; // so few pixels are soon gathered
+    scene.camera.crop = {};
+    CHECK(film({FILTER_mitchell, 1e38}).width == 64);
 }
 
 // The triangles that listed face i stands for: in the slots that the device finds them in, with the corners that it

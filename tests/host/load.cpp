@@ -1,12 +1,15 @@
 #include "read/nori/load.h"
+#include "base/hash.h"
 #include "base/log.h"
 #include "base/table.h"
+#include "base/values.h"
 #include "read/nori/tests.h"
 #include "strategies/check.h"
 #include "support/error_of.h"
 #include "support/scratch.h"
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -195,6 +198,23 @@ TEST_CASE_METHOD(LoadFixture, "the filter without <rfilter> is the dialect's", "
     CHECK(upstream.stddev == 0.5);
 }
 
+TEST_CASE_METHOD(LoadFixture, "a scene's hash is that of all files that were read", "[load]") {
+    const std::string obj = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl grey\nf 1 2 3\n", mtl = "newmtl grey\n";
+    scratch.write("a.obj", obj);
+    scratch.write("a.mtl", mtl);
+    const auto mesh = [&](bool materials) {
+        return "<mesh type='obj'><string name='filename' value='a.obj'/><boolean name='materials' value='" +
+               std::string(materials ? "true" : "false") + "'/></mesh>";
+    };
+    for (const bool materials : {false, true}) {
+        const SceneDescription scene = load(camera + mesh(materials));
+        std::string lines = xxh128(test::read_text(file())) + "\n" + xxh128(obj) + "\n";
+        if (materials)
+            lines += xxh128(mtl) + "\n";
+        CHECK(scene.hash == xxh128(lines));
+    }
+}
+
 TEST_CASE_METHOD(LoadFixture, "filters by type", "[load]") {
     auto filter = [&](const std::string &xml) {
         return load("<camera type='perspective'>" + xml + "</camera>" + light).camera.filter;
@@ -211,6 +231,39 @@ TEST_CASE_METHOD(LoadFixture, "filters by type", "[load]") {
     CHECK(mitchell.c == 1.0 / 3);
     CHECK_THAT(error_in("<camera type='perspective'>\n<rfilter type='sinc'/></camera>"),
                Catch::Equals(":3:1: unknown rfilter type 'sinc'; available: box, tent, gaussian, mitchell"));
+}
+
+TEST_CASE_METHOD(LoadFixture, "filters whose weights vanish, cancel or overflow fail at their place", "[load]") {
+    const auto filter_error = [&](const std::string &type, const std::string &numbers) {
+        std::string properties;
+        for (const std::string_view number : split(numbers)) {
+            const size_t equals = number.find('=');
+            properties +=
+                fmt::format("<float name='{}' value='{}'/>", number.substr(0, equals), number.substr(equals + 1));
+        }
+        return error_in("<camera type='perspective'>\n<rfilter type='" + type + "'>" + properties +
+                        "</rfilter></camera>" + light);
+    };
+    for (const char *numbers :
+         {"radius=1e-30", "radius=0.001", "radius=0.5", "radius=-2", "stddev=0.001", "stddev=0.05", "stddev=-0.5",
+          "stddev=0", "stddev=1e4", "stddev=1e9", "stddev=1e30", "radius=1e38 stddev=1e38", "radius=0.01 stddev=1e-3"})
+        CHECK_THAT(filter_error("gaussian", numbers),
+                   Catch::StartsWith(":3:1: gaussian, radius ") &&
+                       Catch::EndsWith("possible: a radius above 0.5, and a stddev from 0.08 to 10 times the radius"));
+    for (const char *numbers : {"radius=0.001", "radius=0.6", "radius=-1", "B=3e38", "B=-3e38", "C=3e38", "B=1e10",
+                                "B=-1e10", "B=4", "C=1e30", "radius=1 B=0"})
+        CHECK_THAT(filter_error("mitchell", numbers),
+                   Catch::StartsWith(":3:1: mitchell, radius ") &&
+                       Catch::EndsWith("possible: a radius above 1, and B and C from 0 to 1"));
+    // What the errors call possible is.
+    for (const char *radius : {"0.51", "0.7", "1", "2", "5", "31.5"}) {
+        CHECK(filter_error("gaussian", std::string("stddev=0.08 radius=") + radius).empty());
+        CHECK(filter_error("gaussian", fmt::format("stddev={} radius={}", 10 * std::stod(radius), radius)).empty());
+    }
+    for (const char *radius : {"1.01", "1.5", "2", "4", "31.5"})
+        for (const char *b : {"0", "0.5", "1"})
+            for (const char *c : {"0", "0.5", "1"})
+                CHECK(filter_error("mitchell", fmt::format("radius={} B={} C={}", radius, b, c)).empty());
 }
 
 TEST_CASE_METHOD(LoadFixture, "camera values that make no sense fail at their place", "[load]") {

@@ -1,15 +1,21 @@
 // The figures and the page of a sweep, from replicates whose truth is known.
 #include "base/base64.h"
+#include "base/error.h"
+#include "support/error_of.h"
 #include "support/scratch.h"
 #include "sweep/auto.h"
 #include "sweep/convergence_plot.h"
+#include "sweep/lock.h"
 #include "sweep/page.h"
 #include "sweep/reference.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include <functional>
 #include <random>
+
+#include <unistd.h>
 
 using namespace opal;
 using opal::test::ScratchFolder;
@@ -146,6 +152,139 @@ TEST_CASE("An error map's inputs: the reference's variance is subtracted without
     CHECK(error_against(reference, image(1)).mse == Approx(0.01).epsilon(0.03));
     CHECK(error_against(reference, image(0)).mse == Approx(0).margin(2e-4));
     CHECK(mean_luminance(reference) == Approx(1).epsilon(1e-3));
+}
+
+namespace {
+
+// A record that a sweep could have written.
+SweepRecord whole_record() {
+    SweepRecord record = record_of();
+    record.clock = "kernel";
+    record.kernel = "special";
+    record.width = record.height = 4;
+    record.replicates = 2;
+    record.spp = {4, 16};
+    record.seed = 7;
+    record.definitions = {{"a", "1"}};
+    record.options = {{"max-depth", "5"}};
+    for (StrategyRecord &s : record.strategies) {
+        s.points.resize(2);
+        for (SweepPoint &point : s.points) {
+            point.replicates.resize(2);
+            for (unsigned i = 0; i < 2; i++)
+                point.replicates[i].seed = 8 + i;
+        }
+        s.shot = {4, 1, 0.5, "equal_time_" + std::to_string(&s - record.strategies.data() + 1)};
+    }
+    return record;
+}
+
+} // namespace
+
+TEST_CASE("A sweep.json with anything in it is refused with the key, or can be summed up", "[sweep_page]") {
+    const ScratchFolder folder;
+    save(whole_record(), folder.path());
+    const nlohmann::json whole = nlohmann::json::parse(test::read_text(folder / "sweep.json"));
+    size_t refused = 0, taken = 0;
+    const auto try_text = [&](const std::string &text, const std::string &key) {
+        folder.write("sweep.json", text);
+        INFO(key << " " << text.substr(0, 2000));
+        try {
+            const SweepRecord record = load_record(folder.path());
+            const SweepSummary summary = summarise(record);
+            csv(summary);
+            convergence_plot(summary);
+            if (!summary.strategies.empty())
+                html_page(record, summary, folder.path());
+            taken++;
+        } catch (const Error &error) {
+            refused++;
+            CHECK_THAT(error.what(),
+                       Catch::StartsWith((folder / "sweep.json").string() + ": is no sweep that could be continued: "));
+        }
+    };
+    try_text(whole.dump(), "whole");
+    REQUIRE(taken == 1);
+    const std::string text = whole.dump();
+    for (size_t end = 0; end < text.size(); end += 13)
+        try_text(text.substr(0, end), "cut");
+    CHECK(refused == (text.size() + 12) / 13);
+    const nlohmann::json::object_t empty;
+    const std::vector<nlohmann::json> strange = {nullptr,
+                                                 true,
+                                                 "text",
+                                                 -1,
+                                                 0,
+                                                 2.5,
+                                                 1e300,
+                                                 -1e300,
+                                                 4294967295u,
+                                                 1ull << 40,
+                                                 1ull << 63,
+                                                 empty,
+                                                 nlohmann::json::array(),
+                                                 {1, "a"}};
+    const std::function<void(const nlohmann::json::json_pointer &)> mutate =
+        [&](const nlohmann::json::json_pointer &at) {
+            const nlohmann::json &value = whole[at];
+            if (!at.empty()) {
+                for (const nlohmann::json &other : strange) {
+                    nlohmann::json changed = whole;
+                    changed[at] = other;
+                    try_text(changed.dump(), at.to_string());
+                }
+                nlohmann::json changed = whole;
+                nlohmann::json &parent = changed[at.parent_pointer()];
+                if (parent.is_object())
+                    parent.erase(at.back());
+                else
+                    parent.erase(std::stoul(at.back()));
+                try_text(changed.dump(), at.to_string() + " erased");
+            }
+            if (value.is_object())
+                for (const auto &[name, inner] : value.items())
+                    mutate(at / name);
+            if (value.is_array())
+                for (size_t i = 0; i < value.size(); i++)
+                    mutate(at / i);
+        };
+    mutate(nlohmann::json::json_pointer());
+    CHECK(refused > 1000);
+    CHECK(taken > 100);
+
+    const auto reason = [&](const std::string &at, const nlohmann::json &value) {
+        nlohmann::json changed = whole;
+        changed[nlohmann::json::json_pointer(at)] = value;
+        folder.write("sweep.json", changed.dump());
+        return test::error_of([&] { load_record(folder.path()); });
+    };
+    CHECK_THAT(reason("/strategies/1/points/0/replicates/1/seed", 8),
+               Catch::Contains("strategies[1].points[0].replicates[1].seed is 8, not 9"));
+    CHECK_THAT(reason("/strategies/0/points/0/replicates/1/seconds", -1),
+               Catch::Contains("strategies[0].points[0].replicates[1].seconds is below 0"));
+    CHECK_THAT(reason("/strategies/0/points/0/replicates/1/mse", nullptr),
+               Catch::Contains("strategies[0].points[0].replicates[1].mse is no number"));
+    CHECK_THAT(reason("/strategies/0/shot/file", "../secret"), Catch::Contains("strategies[0].shot.file is not "));
+    CHECK_THAT(reason("/replicates", -2), Catch::Contains("replicates is no whole number from 0"));
+    CHECK_THAT(reason("/spp", {16, 4}), Catch::Contains("spp is no rising list"));
+    // A point without replicates, of a sweep that was stopped, is measured again.
+    CHECK(reason("/strategies/0/points/1/replicates", nlohmann::json::array()).empty());
+    CHECK(load_record(folder.path()).strategies[0].points.size() == 1);
+}
+
+TEST_CASE("A folder's lock is held by one at a time, and ends with its holder", "[sweep_page]") {
+    const ScratchFolder folder;
+    {
+        const FolderLock lock(folder.path());
+        CHECK_THAT(test::error_of([&] { FolderLock other(folder.path()); }),
+                   Catch::StartsWith(folder.path().string() + ": another sweep (process " + std::to_string(getpid()) +
+                                     ") writes there"));
+    }
+    const FolderLock again(folder.path());
+    const ScratchFolder linked;
+    std::filesystem::create_symlink(linked / "victim", linked / ".sweep.lock");
+    CHECK_THAT(test::error_of([&] { FolderLock other(linked.path()); }), Catch::Contains("cannot write"));
+    CHECK_FALSE(std::filesystem::exists(linked / "victim"));
 }
 
 TEST_CASE("Base64 as RFC 4648 has it", "[sweep_page]") {

@@ -1,4 +1,6 @@
 // The film: sums lose no sample, and leave out and count those that are not finite.
+#include "image/image.h"
+#include "render/report.h"
 #include "support/checks.h"
 #include "support/device.h"
 #include "support/mutants.h"
@@ -194,4 +196,59 @@ TEST_CASE("The binary tells of invalid samples, in words and in the JSON", "[fil
     CHECK(report["warnings"].size() == 2);
     CHECK_THAT(outcome.err, Catch::Contains("6 of 64 pixels (9.38 %) have no valid sample"));
     CHECK(std::isfinite(report["mean_luminance"].get<double>()));
+}
+
+TEST_CASE("An image that is NaN is written and told, in the EXR and the JSON, and the exit code is 1", "[film]") {
+    const ScratchFolder folder;
+    const auto scene = [&](const std::string &radiance) {
+        return folder
+            .write("scene.xml", "<scene><integrator type='path_mis'/><camera type='perspective'><integer name='width' "
+                                "value='4'/><integer name='height' value='4'/></camera><mesh type='parallelogram'>"
+                                "<point name='origin' value='-9 -9 5'/><vector name='u' value='0 18 0'/><vector "
+                                "name='v' value='18 0 0'/><emitter type='area'><color name='radiance' value='" +
+                                    radiance + "'/></emitter></mesh></scene>")
+            .string();
+    };
+    const std::string in = "cd " + folder.path().string() + " && " OPAL_BINARY " render ";
+    const std::string message = "16 pixels of the image are NaN or infinite";
+    const Outcome outcome = run_shell(in + scene("1e38 1e38 1e38") + " --spp 64 -o out.exr --json out.json");
+    INFO(outcome.err);
+    CHECK(outcome.exit_code == 1);
+    CHECK_THAT(outcome.err, Catch::Contains("warning: " + message));
+    const nlohmann::json report = nlohmann::json::parse(read_text(folder / "out.json"));
+    CHECK(report["invalid_pixels"] == 16);
+    CHECK(report["samples_lost"] == false);
+    CHECK_THAT(report["warnings"].dump(), Catch::Contains(message));
+    const Image image = read_exr(folder / "out.exr");
+    CHECK(image.number("opal.invalid_pixels") == 16);
+    CHECK_THAT(image.text("opal.warnings"), Catch::Contains(message));
+    CHECK(image.text("opal.scene_hash") == report["scene_hash"]);
+    CHECK(std::filesystem::exists(folder / "out.png"));
+    // One such scene of several fails, and the others are rendered.
+    folder.write("good.xml", read_text(scene("1 1 1")));
+    const std::string bad = scene("1e38 1e38 1e38");
+    const Outcome several = run_shell(in + bad + " good.xml --spp 64 -o all/");
+    CHECK(several.exit_code == 1);
+    CHECK_THAT(several.err, Catch::Contains("1 of 2 scenes failed: "));
+    CHECK(std::filesystem::exists(folder / "all/good.exr"));
+    // The other way to lose all samples: an image that is black, of samples that are not.
+    const auto black = [](std::array<double, 3> mean, unsigned long long samples, unsigned long long invalid) {
+        FilmStatistics s;
+        s.mean_rgb = mean;
+        s.samples = samples;
+        s.invalid = invalid;
+        Image dark{1, 1, {{"R", {0}}, {"G", {0}}, {"B", {0}}}, {}};
+        return find_fault(dark, s).samples_lost;
+    };
+    CHECK(black({0, 1e-3, 0}, 4, 0));
+    CHECK(black({0, 0, 0}, 0, 4)); // none is finite
+    CHECK_FALSE(black({0, 0, 0}, 4, 0));
+    CHECK_FALSE(black({0, 0, 0}, 0, 0));
+    const Outcome good = run_shell(in + scene("1 1 1") + " --spp 4 -o other.exr");
+    CHECK(good.exit_code == 0);
+    const Outcome compared =
+        run_shell("cd " + folder.path().string() + " && " OPAL_BINARY " compare other.exr all/good.exr");
+    CHECK(compared.err.find("different scene files") == std::string::npos);
+    CHECK_THAT(run_shell("cd " + folder.path().string() + " && " OPAL_BINARY " compare other.exr out.exr").err,
+               Catch::Contains("note: other.exr and out.exr are of different scene files"));
 }

@@ -71,9 +71,14 @@ TEST_CASE("The JSON of every command is as its schema says", "[json_files]") {
                     "0'/><bsdf type='diffuse'><color name='albedo' value='$a $a $a'/></bsdf></mesh><emitter "
                     "type='point'><point name='position' value='0 0 0'/><color name='power' value='9 9 9'/></emitter>"
                     "</scene>");
+    const std::string bright = folder.write( // NaN: sums beyond single precision
+        "bright.xml", "<scene><camera type='perspective'/><mesh type='parallelogram'><point name='origin' value='-9 -9 "
+                      "5'/><vector name='u' value='0 18 0'/><vector name='v' value='18 0 0'/><emitter type='area'>"
+                      "<color name='radiance' value='1e38 1e38 1e38'/></emitter></mesh></scene>");
     REQUIRE(run_shell(in + box + " --width 8 --spp 2 --layers variance -o a.exr").exit_code == 0);
     for (const auto &[schema, command] : std::vector<std::pair<std::string, std::string>>{
              {"render", "render " + box + " --width 8 --spp 1"},
+             {"render", "render " + bright + " --width 4 --spp 64"},
              {"inspect", "inspect " + box},
              {"devices", "devices"},
              {"version", "version"},

@@ -75,3 +75,40 @@ TEST_CASE("A render of 1920 x 1080 pixels takes at most 124 bytes for each, what
         CHECK(bytes > 60); // the film alone: else this measures nothing
     }
 }
+
+TEST_CASE("What does not fit into memory is told before it is begun", "[memory]") {
+    const ScratchFolder folder;
+    const std::string exr = folder / "large.exr", box = OPAL_SOURCE_DIR "/scenes/cbox_mis.xml";
+    const std::string opal = " '" OPAL_BINARY "' ";
+    SECTION("an image, under ulimit -v") {
+        const Outcome outcome = run_shell("ulimit -v 3000000; timeout 60" + opal + box +
+                                          " --width 8000 --height 8000 --spp 1 --device cpu -o '" + exr + "'");
+        INFO(outcome.err);
+        CHECK(outcome.exit_code == 1);
+        CHECK_THAT(outcome.err, Catch::Contains("error: an image of 8000 x 8000 pixels: about ") &&
+                                    Catch::Contains(" are left (ulimit -v or -d)"));
+    }
+    SECTION("an image that fits under ulimit -v") {
+        const Outcome outcome =
+            run_shell("ulimit -v 3000000; timeout 60" + opal + box +
+                      " --width 3300 --height 3300 --time 0.1s --device cpu --no-png -o '" + exr + "'");
+        INFO(outcome.err);
+        CHECK(outcome.exit_code == 0);
+    }
+    SECTION("an image of more pixels than kernels count") {
+        const Outcome outcome = run_shell("timeout 60" + opal + box + " --width 65535 --height 65535 -o '" + exr + "'");
+        INFO(outcome.err);
+        CHECK(outcome.exit_code == 1);
+        CHECK_THAT(outcome.err, Catch::Contains("possible are 1.432e+09 pixels at the most"));
+    }
+    SECTION("a tree") {
+        folder.write("field.obj", field(708));
+        const std::string scene =
+            folder.write("field.xml", "<scene><camera type='perspective'/><mesh type='obj'><string name='filename' "
+                                      "value='field.obj'/></mesh></scene>");
+        const Outcome outcome = run_shell("ulimit -v 180000; timeout 60" + opal + "inspect '" + scene + "'");
+        INFO(outcome.err);
+        CHECK(outcome.exit_code == 1);
+        CHECK_THAT(outcome.err, Catch::Contains("the tree of 1002528 triangles: about "));
+    }
+}

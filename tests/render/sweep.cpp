@@ -4,9 +4,12 @@
 #include "read/nori/load.h"
 #include "support/device.h"
 #include "support/scratch.h"
+#include "sweep/lock.h"
 #include "sweep/run.h"
 
 #include <nlohmann/json.hpp>
+
+#include <unistd.h>
 
 using namespace opal;
 using namespace opal::test;
@@ -336,4 +339,126 @@ TEST_CASE("A sweep says which kernels it measured, and goes on with them", "[swe
     CHECK(sweep("--replicates 2 --specialise on") == "special");
     std::filesystem::remove_all(folder.scratch / "out");
     CHECK(sweep("--replicates 2 --specialise off") == "general");
+}
+
+TEST_CASE("A sweep is told by all that it reads and by its options", "[sweep]") {
+    SceneFolder folder;
+    const std::string box = "v -3 -3 5\nv 3 -3 5\nv 3 3 5\nv -3 3 5\nvn 0 0 -1\nf 1//1 3//1 2//1\nf 1//1 4//1 3//1\n";
+    folder.scratch.write("floor.obj", "mtllib floor.mtl\nusemtl grey\n" + box);
+    folder.scratch.write("floor.mtl", "newmtl grey\nKd 0.5 0.5 0.5\n");
+    const std::string mesh = "<mesh type='obj'><string name='filename' value='floor.obj'/><boolean name='materials' "
+                             "value='true'/></mesh></scene>";
+    std::string text = scene_text;
+    text.replace(text.find("</scene>"), 8, mesh);
+    folder.scene = folder.scratch.write("lamp.xml", text);
+    const std::string how = "--strategies lighting=emitter lighting=mis --spp 2 --replicates 2 -o out ";
+    REQUIRE(folder.sweep(how).exit_code == 0);
+    CHECK(folder.sweep(how).exit_code == 0);
+    const auto refused = [&](const std::string &what, const std::string &options = "") {
+        const Outcome outcome = folder.sweep(how + options);
+        INFO(outcome.err);
+        CHECK(outcome.exit_code == 1);
+        CHECK_THAT(outcome.err, Catch::Contains("out/sweep.json: holds another sweep (" + what + " was "));
+    };
+    refused("seed", "--seed 2");
+    refused("reference_spp", "--reference-spp 64");
+    refused("options.max-depth", "--max-depth 3");
+    refused("width", "--width 12");
+    const auto changed = [&](const std::string &file, const std::string &content) {
+        const std::string before = read_text(folder.scratch / file);
+        folder.scratch.write(file, content);
+        refused("scene_hash");
+        folder.scratch.write(file, before);
+    };
+    const std::string obj = read_text(folder.scratch / "floor.obj");
+    changed("floor.obj", obj.substr(0, obj.rfind("f "))); // a face removed
+    changed("floor.obj", obj + "vn 0 1 0\n");             // normals
+    changed("floor.mtl", "newmtl grey\nKd 0.6 0.5 0.5\n");
+    std::string tent = text;
+    tent.replace(tent.find("</camera>"), 9, "<rfilter type='tent'/></camera>");
+    changed("lamp.xml", tent);
+    CHECK(folder.sweep(how).exit_code == 0);
+}
+
+TEST_CASE("No sample is counted twice: a sweep goes on with its own seed only", "[sweep]") {
+    const SceneFolder folder;
+    const std::string how = "--strategies lighting=emitter lighting=mis --spp 2 -o out ";
+    REQUIRE(folder.sweep(how + "--replicates 2 --seed 2").exit_code == 0);
+    CHECK_THAT(folder.sweep(how + "--replicates 4 --seed 0").err, Catch::Contains("(seed was 2, is 0)"));
+    REQUIRE(folder.sweep(how + "--replicates 4 --seed 2").exit_code == 0);
+    for (const nlohmann::json &strategy : folder.record()["strategies"])
+        for (unsigned r = 0; r < 4; r++)
+            CHECK(strategy["points"][0]["replicates"][r]["seed"] == 3 + r);
+}
+
+TEST_CASE("Two sweeps into one folder: the second ends at once", "[sweep]") {
+    const SceneFolder folder;
+    const FolderLock lock(folder.scratch.path());
+    SceneFolder own;
+    std::string text = scene_text;
+    text.replace(text.find("0.8 0.8 0.8"), 11, "$a $a $a");
+    own.scratch.write("lamp.xml", text);
+    for (const std::string how : {"-D a=0.5", "--vary a=0.2,0.8"}) {
+        const Outcome outcome = own.sweep(how + " -o " + folder.scratch.path().string());
+        INFO(outcome.err);
+        CHECK(outcome.exit_code == 1);
+        CHECK_THAT(outcome.err, Catch::Contains(folder.scratch.path().string() + ": another sweep (process " +
+                                                std::to_string(getpid()) + ") writes there"));
+        CHECK_FALSE(std::filesystem::exists(folder.scratch / "sweep.json"));
+        CHECK_FALSE(std::filesystem::exists(folder.scratch / "a=0.2"));
+    }
+}
+
+TEST_CASE("A sweep heals what is missing or cut off in its folder", "[sweep]") {
+    const SceneFolder folder;
+    const std::string how = "--strategies lighting=emitter lighting=mis --spp 2 --replicates 2 -o out ";
+    REQUIRE(folder.sweep(how).exit_code == 0);
+    const std::vector<std::string> files = {"reference.exr", "reference.png", "equal_time_1.exr", "equal_time_2.png",
+                                            "equal_time_1_error.png"};
+    const auto record = folder.record();
+    const std::string reference = read_text(folder.scratch / "out/reference.exr");
+    CHECK(read_exr(folder.scratch / "out/reference.exr").text("opal.scene_hash") == record["scene_hash"]);
+    for (const bool cut : {false, true}) {
+        for (const std::string &file : files)
+            if (cut)
+                folder.scratch.write("out/" + file, read_text(folder.scratch / ("out/" + file)).substr(0, 200));
+            else
+                std::filesystem::remove(folder.scratch / ("out/" + file));
+        const Outcome outcome = folder.sweep(how);
+        INFO(outcome.err);
+        REQUIRE(outcome.exit_code == 0);
+        CHECK_THAT(outcome.err, Catch::Contains("reference.exr: is missing or was changed; it is rendered again"));
+        CHECK(read_text(folder.scratch / "out/reference.exr") == reference);
+        for (const std::string &file : files)
+            CHECK(is_whole_picture(folder.scratch / ("out/" + file)));
+        CHECK(folder.record()["strategies"][0]["points"] == record["strategies"][0]["points"]);
+    }
+    // A picture of a strategy that is not swept now is left out of the page, in words.
+    std::filesystem::remove(folder.scratch / "out/equal_time_1.png");
+    REQUIRE(folder.sweep("--strategies lighting=mis --spp 2 --replicates 2 -o out").exit_code == 0);
+    const std::string page = read_text(folder.scratch / "out/index.html");
+    CHECK(count(page, "the picture is missing") == 1);
+    CHECK(count(page, "base64,\"") == 0);
+    // Only the strategy that made the reference can make it again.
+    std::filesystem::remove(folder.scratch / "out/reference.exr");
+    const std::string maker = record["reference"]["made_by"], other = maker == "lighting=mis" ? "emitter" : "mis";
+    const Outcome lost = folder.sweep("--strategies lighting=" + other + " --spp 2 --replicates 2 -o out");
+    CHECK(lost.exit_code == 1);
+    CHECK_THAT(lost.err, Catch::Contains("reference.exr: only strategy " + maker));
+}
+
+TEST_CASE("Images that are NaN end a sweep and a verification with the strategy's name", "[sweep]") {
+    SceneFolder folder;
+    std::string text = scene_text;
+    text.replace(text.find("3 3 3"), 5, "1e38 1e38 1e38");
+    text.replace(text.find("-0.4 -0.4 4"), 11, "-0.4 0.4 4"); // turned to the camera
+    text.replace(text.find("0 0.8 0"), 7, "0 -0.8 0");
+    folder.scene = folder.scratch.write("lamp.xml", text);
+    const Outcome swept = folder.sweep("--strategies lighting=emitter lighting=mis --spp 64 --replicates 2 -o out");
+    CHECK(swept.exit_code == 1);
+    CHECK_THAT(swept.err, Catch::Contains("error: lighting=") && Catch::Contains("NaN or infinite"));
+    const Outcome verified = run_shell("cd " + folder.scratch.path().string() + " && " OPAL_BINARY " verify " +
+                                       folder.scene + " --budget 1s --strategies 'lighting=mis;lighting=emitter'");
+    CHECK(verified.exit_code == 1);
+    CHECK_THAT(verified.err, Catch::Contains("NaN or infinite, so that nothing can be told"));
 }

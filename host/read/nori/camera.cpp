@@ -1,5 +1,6 @@
 // Parsers of the camera and of its reconstruction filter.
 #include "read/nori/parsers.h"
+#include "scene/filter.h"
 
 #include <fmt/format.h>
 
@@ -14,15 +15,12 @@ void parse_tent(Properties &, Filter &filter) { filter.radius = 1; }
 void parse_gaussian(Properties &properties, Filter &filter) {
     filter.radius = properties.number("radius").value_or(2);
     filter.stddev = properties.number("stddev").value_or(0.5);
-    properties.check(filter.radius > 0, "radius", "must be positive");
-    properties.check(filter.stddev > 0, "stddev", "must be positive");
 }
 
 void parse_mitchell(Properties &properties, Filter &filter) {
     filter.radius = properties.number("radius").value_or(2);
     filter.b = properties.number("B").value_or(1.0 / 3);
     filter.c = properties.number("C").value_or(1.0 / 3);
-    properties.check(filter.radius > 0, "radius", "must be positive");
 }
 
 struct FilterType {
@@ -65,7 +63,10 @@ Filter parse_filter(const XmlNode &node, const ParseContext &context) {
         return filter;
     filter.kind = type->kind;
     filter.given = true;
+    filter.place = node.place();
     type->parse(properties, filter);
+    if (const std::string problem = filter_problem(filter); !problem.empty())
+        properties.mistake(problem);
     properties.finish();
     return filter;
 }

@@ -40,6 +40,7 @@ struct ParseContext {
     bool lenient = false;             // what is unknown warns instead of failing
     Mistakes *mistakes = nullptr;     // gathers mistakes; null: the first one is thrown
     std::optional<Dialect> dialect{}; // nothing: a scene's names tell it
+    FileHashes *hashes = nullptr;     // gets those of the files that are read; null: nobody asks
 
     void mistake(const SourcePlace &place, const std::string &message) const;
     void mistake(const XmlNode &node, const std::string &message) const { mistake(node.place(), message); }

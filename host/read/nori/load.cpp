@@ -104,7 +104,8 @@ SceneDescription parse_scene(const XmlNode &node, const ParseContext &context) {
 }
 
 SceneDescription load_scene(const std::filesystem::path &file, const LoadOptions &options) {
-    XmlDocument document(file);
+    FileHashes hashes;
+    XmlDocument document(file, &hashes);
     XmlNode root = document.root();
     if (root.tag() == "test")
         root.fail("this is a <test>, not a <scene>: run it with `opal test`");
@@ -116,8 +117,10 @@ SceneDescription load_scene(const std::filesystem::path &file, const LoadOptions
     mistakes.throw_all(); // what lacks its value would be told twice
     const DialectChoice choice = choose_dialect(root, context);
     context.dialect = choice.dialect; // so that parse_scene does not look for names again
+    context.hashes = &hashes;
     SceneDescription scene = parse_scene(root, context);
     scene.definitions = definitions;
+    scene.hash = hashes.value();
     mistakes.throw_all();
     tell_dialect(scene, choice, root.place());
     return scene;

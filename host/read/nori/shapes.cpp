@@ -36,15 +36,18 @@ std::vector<Mesh> parse_obj(Properties &properties, MeshStart start) {
     if (start.mesh.name.empty())
         start.mesh.name = name;
     const std::filesystem::path file = find_file(properties, name);
+    FileHashes *const hashes = properties.context().hashes;
     try {
-        ObjFile obj = read_obj(file, start.to_world);
+        ObjFile obj = read_obj(file, start.to_world, hashes);
         if (with_materials)
-            return meshes_by_material(std::move(obj), file, start.mesh, start.own);
+            return meshes_by_material(std::move(obj), file, start.mesh, start.own, hashes);
         if (!start.own.own_bsdf)
             warn_of_unused_materials(obj, file);
         start.mesh.shape = std::move(obj.mesh);
     } catch (const Error &error) { // the place in the OBJ file comes first
         throw Error(std::string(error.what()) + " (the mesh at " + start.mesh.place.text() + ")");
+    } catch (const std::bad_alloc &) {
+        throw Error(start.mesh.place.text() + ": out of memory while " + file.string() + " is read");
     }
     return {std::move(start.mesh)};
 }

@@ -1,0 +1,117 @@
+// Reading takes time in proportion to the file: what a file repeats a hundred thousand times is not looked for anew
+// each time. Readers that were quadratic took minutes to hours for these files.
+#include "base/log.h"
+#include "read/nori/load.h"
+#include "support/error_of.h"
+#include "support/scratch.h"
+
+#include <catch2/catch.hpp>
+
+#include <ctime>
+#include <fmt/format.h>
+
+using namespace opal;
+using namespace opal::test;
+
+namespace {
+
+constexpr int many = 100'000;
+constexpr double most_seconds = 30; // of CPU time: some 30 times what a slow machine takes under a sanitizer
+
+template <class Part> std::string repeated(Part part) {
+    std::string text;
+    for (int i = 0; i < many; i++)
+        text += part(i);
+    return text;
+}
+
+std::string scene_of(const std::string &rest) { return "<scene><camera type='perspective'/>\n" + rest + "</scene>"; }
+
+std::string parallelogram(int i, const std::string &rest) {
+    return fmt::format(
+        "<mesh type='parallelogram'><point name='origin' value='{} {} 0'/><vector name='u' value='1 0 0'/>"
+        "<vector name='v' value='0 1 0'/>{}</mesh>\n",
+        i % 300, i / 300, rest);
+}
+
+// Loads the scene, whether it is right or wrong.
+void load_in_time(const ScratchFolder &folder, const std::string &text) {
+    const std::clock_t start = std::clock();
+    try {
+        load_scene(folder.write("scene.xml", text));
+    } catch (const Error &) {
+    }
+    CHECK(double(std::clock() - start) / CLOCKS_PER_SEC < most_seconds);
+    forget_warnings();
+}
+
+} // namespace
+
+TEST_CASE("XML of a hundred thousand objects, properties, attributes or names takes linear time", "[linear_readers]") {
+    const ScratchFolder folder;
+    SECTION("meshes") {
+        load_in_time(folder, scene_of(repeated([](int i) { return parallelogram(i, ""); })));
+    }
+    SECTION("BSDFs") {
+        load_in_time(folder, scene_of(repeated([](int i) { return parallelogram(i, "<bsdf type='mirror'/>"); })));
+    }
+    SECTION("lights") {
+        load_in_time(folder, scene_of(repeated([](int) {
+                         return "<emitter type='point'><point name='position' value='1 2 3'/><color name='power' "
+                                "value='1 1 1'/></emitter>\n";
+                     })));
+    }
+    SECTION("properties of one object") {
+        load_in_time(folder, scene_of("<mesh type='parallelogram'>" + repeated([](int i) {
+                                          return fmt::format("<float name='p{}' value='1'/>\n", i);
+                                      }) +
+                                      "</mesh>"));
+    }
+    SECTION("attributes of one tag") {
+        load_in_time(folder, scene_of("<mesh " + repeated([](int i) { return fmt::format("a{}='1' ", i); }) + "/>"));
+    }
+    SECTION("transforms") {
+        load_in_time(folder,
+                     scene_of("<mesh type='obj'><transform name='toWorld'>" +
+                              repeated([](int) { return "<translate value='1 0 0'/>\n"; }) + "</transform></mesh>"));
+    }
+    SECTION("mistakes") {
+        load_in_time(folder, scene_of(repeated([](int) { return "<mesh type='opj'/>\n"; })));
+    }
+    SECTION("defaults and names without a value") {
+        load_in_time(folder, scene_of(repeated([](int i) {
+                         return fmt::format("<default name='d{}' value='1'/><mesh type='$e{}'/>\n", i, i);
+                     })));
+    }
+}
+
+TEST_CASE("OBJ and MTL of a hundred thousand materials, libraries or names take linear time", "[linear_readers]") {
+    const ScratchFolder folder;
+    const std::string scene = scene_of("<mesh type='obj'><string name='filename' value='a.obj'/>"
+                                       "<boolean name='materials' value='true'/></mesh>");
+    const auto faces = [](const std::string &suffix) {
+        return "v 0 0 0\nv 1 0 0\nv 0 1 0\nmtllib a.mtl\n" +
+               repeated([&](int i) { return fmt::format("usemtl m{}{}\nf 1 2 3\n", i, suffix); });
+    };
+    folder.write("a.mtl", repeated([](int i) { return fmt::format("newmtl m{}\nKd 0.5 0.5 0.5\n", i); }));
+    SECTION("materials") { folder.write("a.obj", faces("")); }
+    SECTION("names that no library has") { folder.write("a.obj", faces("x")); }
+    SECTION("libraries that are missing") {
+        folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\n" +
+                                  repeated([](int i) { return fmt::format("mtllib none{}.mtl\n", i); }) + "f 1 2 3\n");
+    }
+    SECTION("statements of one material that stand twice") {
+        folder.write("a.mtl", repeated([](int) { return "newmtl m0\n"; }));
+        folder.write("a.obj", faces(""));
+    }
+    load_in_time(folder, scene);
+}
+
+TEST_CASE("A million warnings are told as a thousand", "[linear_readers]") {
+    forget_warnings();
+    for (int i = 0; i < 5000; i++)
+        warn(fmt::format("the warning {}", i));
+    REQUIRE(warnings().size() == 1001);
+    CHECK(warnings().back() == "more warnings follow, which are not told");
+    forget_warnings();
+}
