@@ -1,6 +1,7 @@
 #include "base/signals.h"
 
 #include <array>
+#include <atomic>
 #include <csignal>
 #include <initializer_list>
 
@@ -13,17 +14,22 @@ namespace {
 volatile std::sig_atomic_t watched = 0;
 volatile std::sig_atomic_t received = 0; // the signal; 0: none
 
-std::array<std::atomic<const RemovedBySignal *>, 16> temporary_files;     // an image's two files at once, and some more
-static_assert(std::atomic<const RemovedBySignal *>::is_always_lock_free); // a handler reads them
+// What a handler reads: memory that is never freed, and numbers without locks.
+struct TemporaryFile {
+    std::atomic<int> folder = -1; // the descriptor; -1: the slot is free; -2: it is being filled
+    std::array<char, 32> name{};
+};
+std::array<TemporaryFile, 16> temporary_files; // an image's two files at once, and some more
+static_assert(std::atomic<int>::is_always_lock_free);
 
 void receive(int signal) {
     if (watched && received == 0 && signal != SIGQUIT) {
         received = signal;
         return;
     }
-    for (const auto &slot : temporary_files)
-        if (const RemovedBySignal *const file = slot)
-            file->remove();
+    for (const TemporaryFile &file : temporary_files)
+        if (const int folder = file.folder; folder >= 0)
+            unlinkat(folder, file.name.data(), 0);
     std::signal(signal, SIG_DFL);
     std::raise(signal); // comes after the handler's end
 }
@@ -52,27 +58,28 @@ bool interrupted() { return received != 0; }
 
 int interrupt_exit_code() { return 128 + (received ? received : SIGINT); }
 
-RemovedBySignal::RemovedBySignal(int folder, const char *name) : folder_(folder), name_(name) {
+RemovedBySignal::RemovedBySignal(int folder, const std::string &name) {
     static const bool handled = [] {
         for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT})
             handle(signal, false);
         return true;
     }();
     (void)handled;
-    for (auto &slot : temporary_files) {
-        const RemovedBySignal *none = nullptr;
-        if (slot.compare_exchange_strong(none, this)) {
-            slot_ = &slot;
-            return;
-        }
+    for (size_t i = 0; i < temporary_files.size() && slot_ < 0; i++) {
+        TemporaryFile &file = temporary_files[i];
+        int free = -1;
+        if (name.size() >= file.name.size() || !file.folder.compare_exchange_strong(free, -2))
+            continue;
+        name.copy(file.name.data(), name.size());
+        file.name[name.size()] = '\0';
+        file.folder = folder;
+        slot_ = int(i);
     }
 }
 
 RemovedBySignal::~RemovedBySignal() {
-    if (slot_)
-        *slot_ = nullptr;
+    if (slot_ >= 0)
+        temporary_files[size_t(slot_)].folder = -1;
 }
-
-void RemovedBySignal::remove() const { unlinkat(folder_, name_, 0); }
 
 } // namespace opal

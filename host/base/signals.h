@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 
-#include <atomic>
+#include <string>
 
 namespace opal {
 
@@ -22,21 +22,17 @@ public:
     using Error::Error;
 };
 
-// The name of a file that a signal which ends the process (SIGINT, SIGTERM, SIGHUP, SIGQUIT) removes while this object
-// lives.
+// A file that a signal which ends the process (SIGINT, SIGTERM, SIGHUP, SIGQUIT) removes while this object lives.
 class RemovedBySignal {
 public:
-    // folder: a descriptor. Both must live as long as this.
-    RemovedBySignal(int folder, const char *name);
+    // folder: a descriptor, open as long as this lives. name: of at most 31 bytes.
+    RemovedBySignal(int folder, const std::string &name);
     ~RemovedBySignal();
     RemovedBySignal(const RemovedBySignal &) = delete;
     RemovedBySignal &operator=(const RemovedBySignal &) = delete;
-    void remove() const; // what the handler does
 
 private:
-    const int folder_;
-    const char *const name_;
-    std::atomic<const RemovedBySignal *> *slot_ = nullptr; // nullptr: none was free
+    int slot_ = -1; // -1: none was free
 };
 
 } // namespace opal

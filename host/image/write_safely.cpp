@@ -157,7 +157,7 @@ public:
     TemporaryFile(int folder, mode_t mode) : folder_(folder) {
         for (int tries = 0; tries < 100; tries++) {
             name_ = random_name();
-            signal_.emplace(folder, name_.c_str());
+            signal_.emplace(folder, name_);
             descriptor_.emplace(again([&] {
                 return openat(folder, name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
             }));

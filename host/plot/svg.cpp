@@ -1,5 +1,7 @@
 #include "plot/svg.h"
 
+#include "base/printable.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -18,7 +20,7 @@ std::string svg_text(double x, double y, const std::string &attributes, const st
 
 std::string html_text(const std::string &plain) {
     std::string out;
-    for (char c : plain)
+    for (char c : as_utf8(plain))
         out += c == '&'    ? "&amp;"
                : c == '<'  ? "&lt;"
                : c == '>'  ? "&gt;"

@@ -20,7 +20,8 @@ void add_figures(const json &value, std::vector<double> &figures) {
 
 std::vector<double> figures_of(const std::filesystem::path &folder) {
     std::vector<double> figures;
-    for (const json &strategy : json::parse(read_text(folder / "sweep.json"))["strategies"])
+    const json record = json::parse(read_text(folder / "sweep.json"));
+    for (const json &strategy : record["strategies"])
         add_figures(strategy["points"], figures);
     return figures;
 }

@@ -21,9 +21,10 @@ const std::string inspect = OPAL_BINARY " inspect " OPAL_SOURCE_DIR "/scenes/cbo
 } // namespace
 
 TEST_CASE("A result that stdout does not take is an error", "[printing]") {
-    for (const std::string &command :
-         {inspect, inspect + " --cl", std::string(OPAL_BINARY " --help"), std::string(OPAL_BINARY " --version"),
-          std::string(OPAL_BINARY " warp --list")}) {
+    for (const std::string &command : {inspect, inspect + " --cl", std::string(OPAL_BINARY " --help"),
+                                       std::string(OPAL_BINARY " --version"), std::string(OPAL_BINARY " version"),
+                                       std::string(OPAL_BINARY " man"), std::string(OPAL_BINARY " completion bash"),
+                                       std::string(OPAL_BINARY " devices"), std::string(OPAL_BINARY " warp --list")}) {
         INFO(command);
         const Outcome full = run_shell(command + " >/dev/full"), closed = run_shell(command + " >&-");
         CHECK(full.exit_code == 1);
