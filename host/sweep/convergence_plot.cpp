@@ -63,7 +63,7 @@ bool can_be_plotted(const PointSummary &p) {
 std::string curve(const StrategySummary &s, const std::string &color, const LogAxis &x, const LogAxis &y) {
     std::string path, marks;
     for (const PointSummary &p : s.points) {
-        if (!(p.rel_mse.estimate > 0 && p.seconds > 0))
+        if (!can_be_plotted(p))
             continue;
         const double px = x(p.seconds), py = y(p.rel_mse.estimate);
         path += fmt::format("{}{:.1f} {:.1f} ", path.empty() ? "M" : "L", px, py);

@@ -123,7 +123,8 @@ void show(const SweepRecord &record, const std::filesystem::path &folder) {
     json_of(summary);
     csv(summary);
     svg_file(convergence_plot(summary));
-    html_page(record, summary, folder);
+    if (!summary.strategies.empty()) // a page is made of a sweep that has measured
+        html_page(record, summary, folder);
 }
 
 } // namespace
