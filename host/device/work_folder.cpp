@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/read_file.h"
 #include "device/kernel_cache.h"
 
 #include <fmt/format.h>
@@ -38,8 +39,15 @@ bool has_room(const fs::path &folder) {
            1ull * status.f_bavail * status.f_frsize >= least_room;
 }
 
-// The process that used `file` died in its first launch. Another process may have had another cache.
-void distrust(const fs::path &file) {
+// A process that left a mark died in the first launch of the kernels of the file that it names. It may have had another
+// cache.
+void distrust_marked(const fs::path &mark) {
+    fs::path file;
+    try {
+        file = read_file(mark);
+    } catch (const Error &) { // there is none
+        return;
+    }
     if (file.is_absolute() && file.parent_path() == cache_folder().path && unlink(file.c_str()) == 0)
         warn(fmt::format("{}: a run ended while it launched these kernels for the first time: they are thrown away and "
                          "compiled anew",
@@ -59,9 +67,7 @@ void remove_dead(const fs::path &parent) {
         const bool dead =
             lock >= 0 ? flock(lock, LOCK_EX | LOCK_NB) == 0 : status.st_mtime < time(nullptr) - longest_start;
         if (dead) {
-            std::string file;
-            std::getline(std::ifstream(folder / mark_name), file);
-            distrust(file);
+            distrust_marked(folder / mark_name);
             fs::remove_all(folder, ignored);
         }
         if (lock >= 0)

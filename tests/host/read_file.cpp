@@ -148,6 +148,7 @@ TEST_CASE("A mesh for which memory is short is an error, not a part of it", "[re
     const Outcome outcome = run_shell("ulimit -v 600000; " OPAL_BINARY " inspect " + scene);
     INFO(outcome.out << outcome.err);
     CHECK(outcome.exit_code == 1);
-    CHECK_THAT(outcome.err, Catch::Contains("error: " + obj.string() + ": cannot read: about 1.0 GiB of memory wanted, and "));
+    CHECK_THAT(outcome.err,
+               Catch::Contains("error: " + obj.string() + ": cannot read: about 1.0 GiB of memory wanted, and "));
 #endif
 }
