@@ -158,6 +158,19 @@ std::string library_reads(const std::string &text) {
 
 } // namespace
 
+TEST_CASE_METHOD(ObjFixture, "faces of fewer than three corners are dropped, also first in the file", "[obj]") {
+    for (const std::string face : {"f\n", "f 1\n", "f 1 2\n"}) {
+        INFO(face);
+        forget_warnings();
+        CHECK(read(square + face + "f 1 2 3\n").triangles.size() == 1);
+        REQUIRE(warnings().size() == 1);
+        CHECK_THAT(warnings()[0], Catch::Contains(":5:1: dropped 1 triangle"));
+        CHECK(read(square + face).triangles.empty());
+        CHECK_THAT(error_in(face), Catch::Contains(face == "f\n" ? "" : "out of range"));
+    }
+    forget_warnings();
+}
+
 TEST_CASE_METHOD(ObjFixture, "which habits of tinyobjloader remain", "[obj]") {
     const std::string ring = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 0\nv 1 3 0\nv 3 3 0\nv 3 1 0\n";
     const std::string two = "v 1 0 0\nv 0 1 0\n"; // behind a vertex: a triangle
