@@ -1,12 +1,11 @@
 // Finding devices: a driver that crashes, hangs or has no device loses its own line of the list and no other, and
 // the choice of a device is explained.
+#include "base/json.h"
 #include "base/log.h"
 #include "device/ask_driver.h"
 #include "device/opencl.h"
 #include "support/device.h"
 #include "support/scratch.h"
-
-#include <nlohmann/json.hpp>
 
 #include <cstdlib>
 

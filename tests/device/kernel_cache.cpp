@@ -1,11 +1,10 @@
 // The cache of compiled kernels and the folder that drivers work in: damage is found, and nothing is looked up or left
 // in the user's working directory.
 #include "device/kernel_cache.h"
+#include "base/json.h"
 #include "device/work_folder.h"
 #include "support/device.h"
 #include "support/scratch.h"
-
-#include <nlohmann/json.hpp>
 
 #include <chrono>
 #include <fstream>

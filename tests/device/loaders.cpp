@@ -1,8 +1,7 @@
 // Other OpenCL loaders than the one that Opal was linked with find the same devices, which compute the same.
+#include "base/json.h"
 #include "support/device.h"
 #include "support/scratch.h"
-
-#include <nlohmann/json.hpp>
 
 #include <cstdlib>
 #include <sstream>

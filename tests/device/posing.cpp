@@ -1,9 +1,9 @@
 // The host's code for GPUs, on a CPU device that says it is one (support/posing_preload.cpp): work-groups of 64, a
 // pixel a work-item, buffers that are copied.
+#include "base/json.h"
 #include "support/scratch.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <map>
 #include <set>

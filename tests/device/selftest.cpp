@@ -1,12 +1,12 @@
 // `opal selftest`: right on this device, and a wrong, crashing or hanging driver is reported as such.
 #include "selftest/selftest.h"
 #include "base/exit_code.h"
+#include "base/json.h"
 #include "base/table.h"
 #include "support/device.h"
 #include "support/mutants.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

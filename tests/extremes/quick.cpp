@@ -1,13 +1,12 @@
 // Single against double precision at the ends of what is promised, and the mutants that a row must see. The whole
 // table: every_row.cpp.
+#include "base/json.h"
 #include "base/table.h"
 #include "extremes/measure.h"
 #include "support/device.h"
 #include "support/mutants.h"
 #include "support/scratch.h"
 #include "support/seeds.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

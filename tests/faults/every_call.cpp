@@ -1,8 +1,8 @@
 // Every error and signal at every system call that a render makes on its files, and SIGKILL at every call of a sweep.
+#include "base/json.h"
 #include "support/faults.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 using namespace opal::test;
 using nlohmann::json;

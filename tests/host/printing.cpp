@@ -4,8 +4,6 @@
 #include "image/image.h"
 #include "support/scratch.h"
 
-#include <nlohmann/json.hpp>
-
 #include <catch2/catch.hpp>
 
 #include <sstream>

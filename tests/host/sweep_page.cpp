@@ -1,6 +1,7 @@
 // The figures and the page of a sweep, from replicates whose truth is known.
 #include "base/base64.h"
 #include "base/error.h"
+#include "base/json.h"
 #include "support/error_of.h"
 #include "support/scratch.h"
 #include "sweep/auto.h"
@@ -10,7 +11,6 @@
 #include "sweep/reference.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <functional>
 #include <random>

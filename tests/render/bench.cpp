@@ -1,10 +1,10 @@
 // `opal bench`: it prints all figures, and its dumped hits are those of its dumped rays and triangles.
 #include "base/exit_code.h"
+#include "base/json.h"
 #include "bench/report.h"
 #include "support/scratch.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <array>
 #include <cmath>

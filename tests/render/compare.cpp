@@ -1,11 +1,11 @@
 // `opal compare` as its users meet it.
 #include "base/exit_code.h"
+#include "base/json.h"
 #include "image/image.h"
 #include "support/scratch.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <random>

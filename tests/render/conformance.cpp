@@ -1,9 +1,9 @@
 // `opal test`: scenes and BSDFs whose means are known in closed form or by quadrature, and kernels that are wrong.
 #include "base/exit_code.h"
+#include "base/json.h"
 #include "support/mutants.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 using namespace opal::test;
 

@@ -1,4 +1,5 @@
 // The film: sums lose no sample, and leave out and count those that are not finite.
+#include "base/json.h"
 #include "image/image.h"
 #include "render/report.h"
 #include "support/checks.h"
@@ -8,8 +9,6 @@
 #include "support/rooms.h"
 #include "support/scratch.h"
 #include "support/seeds.h"
-
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <random>

@@ -1,10 +1,9 @@
 // Ctrl-C: the binary writes the image so far, tells how many samples it has, and exits with a code of its own.
+#include "base/json.h"
 #include "base/signals.h"
 #include "image/image.h"
 #include "support/device.h"
 #include "support/scratch.h"
-
-#include <nlohmann/json.hpp>
 
 #include <chrono>
 #include <cmath>

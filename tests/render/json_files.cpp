@@ -1,8 +1,8 @@
 // --json of every command: one envelope, then what schemas/COMMAND.json says.
+#include "base/json.h"
 #include "support/scratch.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

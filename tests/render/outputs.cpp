@@ -1,10 +1,10 @@
 // Where renders write: inputs are safe, FIFOs and stdout get one file, and no image is lost that could be written.
 #include "base/exit_code.h"
+#include "base/json.h"
 #include "image/image.h"
 #include "support/scratch.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <sys/stat.h>
 

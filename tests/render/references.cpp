@@ -1,4 +1,5 @@
 // Whole images against references of another renderer, with their variances (../shared/references), tile by tile.
+#include "base/json.h"
 #include "read/nori/load.h"
 #include "stats/hypothesis.h"
 #include "support/checks.h"
@@ -7,8 +8,6 @@
 #include "support/pictures.h"
 #include "support/scratch.h"
 #include "support/seeds.h"
-
-#include <nlohmann/json.hpp>
 
 #include <set>
 

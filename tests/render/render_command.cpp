@@ -1,10 +1,10 @@
 // `opal render` as its users meet it: files, statistics, refusals, Ctrl-C.
 #include "base/exit_code.h"
+#include "base/json.h"
 #include "image/image.h"
 #include "support/mutants.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <csignal>
 #include <thread>

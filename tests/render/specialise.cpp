@@ -1,10 +1,10 @@
 // --specialise auto: the general kernel renders where few paths are asked, and is one for all scenes.
+#include "base/json.h"
 #include "image/image.h"
 #include "render/kernel_choice.h"
 #include "support/mutants.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 using namespace opal;
 using namespace opal::test;

@@ -2,6 +2,7 @@
 // truth.
 #include "render/stop_rules.h"
 #include "base/command_line.h"
+#include "base/json.h"
 
 #include "base/units.h"
 #include "image/image.h"
@@ -13,7 +14,6 @@
 #include "support/seeds.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 using namespace opal;
 using namespace opal::test;

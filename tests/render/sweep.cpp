@@ -1,13 +1,12 @@
 // `opal sweep` as its users meet it, on a scene of a few pixels: slopes, the page, resuming, refusals.
 #include "base/exit_code.h"
+#include "base/json.h"
 #include "image/image.h"
 #include "read/nori/load.h"
 #include "support/device.h"
 #include "support/scratch.h"
 #include "sweep/lock.h"
 #include "sweep/run.h"
-
-#include <nlohmann/json.hpp>
 
 #include <unistd.h>
 

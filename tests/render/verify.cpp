@@ -1,5 +1,6 @@
 // `opal verify` as its users meet it: it accepts right kernels, and finds biases that were planted in wrong ones.
 #include "base/exit_code.h"
+#include "base/json.h"
 #include "read/nori/load.h"
 #include "scene/options.h"
 #include "strategies/combinations.h"
@@ -8,7 +9,6 @@
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <regex>
 

@@ -1,12 +1,12 @@
 // `opal verify` on the scenes of scenes/: all strategies agree, and a bias of 2 % planted in one strategy of the
 // Cornell box is found within a minute, on every seed.
 #include "base/exit_code.h"
+#include "base/json.h"
 #include "support/mutants.h"
 #include "support/scratch.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 using namespace opal;
 using namespace opal::test;

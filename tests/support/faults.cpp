@@ -1,10 +1,10 @@
 #include "support/faults.h"
 
 #include "base/error.h"
+#include "base/json.h"
 #include "image/image.h"
 
 #include <catch2/catch.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
