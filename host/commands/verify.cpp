@@ -88,12 +88,25 @@ std::vector<FlatScene> flatten_all(SceneDescription scene, const std::vector<Nam
     return scenes;
 }
 
+// Renders up to sample `end`. False when interrupted. Throws Error if paths that may be endless do not end in time.
+bool render_in_time(Renderer &renderer, unsigned end, const Clock &clock, const std::string &label) {
+    const auto goes_on = [&](double, double) {
+        return !interrupted() && !(renderer.has_endless_paths() && clock.left() < 0);
+    };
+    if (renderer.render(end, goes_on))
+        return true;
+    if (!interrupted())
+        throw Error(fmt::format("strategy {}: its paths do not end within the budget; give --max-depth or another --rr",
+                                label));
+    return false;
+}
+
 // Renders whole passes for about that many seconds. False when interrupted.
-bool render_for(Renderer &renderer, double seconds) {
+bool render_for(Renderer &renderer, double seconds, const std::string &label) {
     const Clock clock(seconds);
     unsigned end = least_spp;
     while (true) {
-        if (!renderer.render(end, [](double, double) { return !interrupted(); }))
+        if (!render_in_time(renderer, end, clock, label))
             return false;
         const double left = clock.left(), a_sample = (seconds - left) / end;
         const double more = std::min(left, 4 * a_sample * end) / a_sample;
@@ -116,9 +129,11 @@ std::vector<StrategyRender> render_all(const Options &o, const std::vector<Named
         options.build.math = s.math;
         options.sources = &sources;
         Renderer renderer(device, scenes[i], options);
-        renderer.render(1); // drivers finish compiling here, outside the strategy's time
+        // Drivers finish compiling here, outside the strategy's time.
+        if (!render_in_time(renderer, 1, clock, strategies[i].name))
+            break;
         renderer.restart(o.seed + unsigned(i));
-        if (!render_for(renderer, std::max(0.0, clock.left() / double(strategies.size() - i))))
+        if (!render_for(renderer, std::max(0.0, clock.left() / double(strategies.size() - i)), strategies[i].name))
             break;
         const Film film = renderer.film();
         renders.push_back({strategies[i], image_of(film, true), double(renderer.next_sample()), film.invalid,

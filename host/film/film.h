@@ -23,6 +23,10 @@ struct Film {
     unsigned long long invalid = 0;              // samples left out as NaN or infinite, those around a crop included
     std::vector<InvalidSample> invalid_places;   // the first few of them
     Crop crop{};                                 // the part of the image; all 0: the whole
+
+    static constexpr size_t bytes_a_pixel(bool wide_filter) {
+        return sizeof(double) * (3 + 4 + (wide_filter ? 4 : 0)) + sizeof(unsigned);
+    }
 };
 
 // The image's mean and its standard error. Each pixel is a stratum, so that the error measures noise, not content: it

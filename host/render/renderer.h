@@ -60,6 +60,7 @@ public:
     Film film() const;
     // The same film. Its memory on the device is freed as it is read: the renderer renders no more.
     Film take_film();
+    bool has_endless_paths() const { return endless_paths_; } // perhaps: a launch may leave paths for the next one
     unsigned next_sample() const { return next_sample_; }
     double kernel_seconds() const { return kernel_seconds_; } // of all launches since the last restart
     double compile_seconds() const { return compile_seconds_; }

@@ -1,8 +1,12 @@
 #include "sweep/measure.h"
 
+#include "base/error.h"
 #include "base/signals.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <ctime>
 
@@ -10,20 +14,30 @@ namespace opal {
 
 CompiledStrategy::CompiledStrategy(const Device &device, const Candidate &candidate, const Sources &sources,
                                    Clock clock)
-    : strategy_(candidate.scene.strategy), clock_(clock), cores_(std::max(1u, device.info.compute_units)),
-      lanes_(lanes_for(device.info, strategy_.lanes, strategy_.math)) {
+    : label_(candidate.label), strategy_(candidate.scene.strategy), clock_(clock),
+      cores_(std::max(1u, device.info.compute_units)), lanes_(lanes_for(device.info, strategy_.lanes, strategy_.math)) {
     RenderOptions options;
     options.build = {.lanes = lanes_, .math = strategy_.math, .kernels = "kernels/render.cl"};
     options.sources = &sources;
     renderer_ = std::make_unique<Renderer>(device, flatten(candidate.scene, lanes_), options);
 }
 
-CompiledStrategy::RenderResult CompiledStrategy::render(unsigned spp, unsigned seed, unsigned first) {
+CompiledStrategy::RenderResult CompiledStrategy::render(unsigned spp, unsigned seed, unsigned first,
+                                                        double most_seconds) {
     renderer_->plan_samples(spp);
     renderer_->restart(seed, first);
     const std::clock_t before = std::clock();
-    if (!renderer_->render(first + spp, [](double, double) { return !interrupted(); }))
-        throw Interrupted{};
+    const auto start = std::chrono::steady_clock::now();
+    const auto is_late = [&] {
+        return renderer_->has_endless_paths() &&
+               std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > most_seconds;
+    };
+    if (!renderer_->render(first + spp, [&](double, double) { return !interrupted() && !is_late(); })) {
+        if (interrupted())
+            throw Interrupted{};
+        throw Error(fmt::format("the strategy {}: paths do not end within {:g} s; give --max-depth or another --rr",
+                                label_, most_seconds));
+    }
     const double cpu_seconds = double(std::clock() - before) / CLOCKS_PER_SEC / cores_;
     RenderResult rendered{renderer_->film(), {}, clock_ == Clock::cpu ? cpu_seconds : renderer_->kernel_seconds()};
     rendered.image = image_of(rendered.film, false);
@@ -46,10 +60,11 @@ double median_of(std::vector<double> values) {
 
 Pilot run_pilot(CompiledStrategy &strategy, unsigned seed, double seconds) {
     unsigned spp = first_spp;
-    CompiledStrategy::RenderResult r = strategy.render(spp, seed, first_pilot_sample);
+    const double most_seconds = std::fmax(10, 20 * seconds); // of paths that may be endless
+    CompiledStrategy::RenderResult r = strategy.render(spp, seed, first_pilot_sample, most_seconds);
     while (r.seconds < seconds / 2 && spp < max_spp) {
         spp = unsigned(std::clamp(seconds / std::fmax(r.seconds, 1e-9) * spp, 2.0 * spp, max_growth * spp));
-        r = strategy.render(spp, seed, first_pilot_sample);
+        r = strategy.render(spp, seed, first_pilot_sample, most_seconds);
     }
     Pilot pilot{spp, r.seconds / spp, {}, {}, strategy.uses_mis()};
     for (size_t p = 0; p < r.film.sum.size(); p++) {

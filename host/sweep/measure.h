@@ -5,6 +5,7 @@
 #include "strategies/presets.h"
 #include "sweep/record.h"
 
+#include <cmath>
 #include <memory>
 
 namespace opal {
@@ -28,14 +29,16 @@ public:
         Image image;
         double seconds = 0;
     };
-    // Renders samples [first, first + spp) of `seed`. Throws Interrupted.
-    RenderResult render(unsigned spp, unsigned seed, unsigned first = 0);
+    // Renders samples [first, first + spp) of `seed`. Throws Interrupted, and Error if paths that may be endless do not
+    // end within that many seconds on the wall.
+    RenderResult render(unsigned spp, unsigned seed, unsigned first = 0, double most_seconds = INFINITY);
 
     double compile_seconds() const { return renderer_->compile_seconds(); }
     int lanes() const { return lanes_; }
     bool uses_mis() const { return strategy_[AXIS_lighting] == CHOICE_lighting_mis; }
 
 private:
+    std::string label_;
     Strategy strategy_;
     Clock clock_;
     double cores_; // compute units of the device

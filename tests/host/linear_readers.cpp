@@ -34,12 +34,15 @@ std::string parallelogram(int i, const std::string &rest) {
         i % 300, i / 300, rest);
 }
 
-// Loads the scene, whether it is right or wrong.
-void load_in_time(const ScratchFolder &folder, const std::string &text) {
+// Loads the scene. Returns its number of meshes and lights, or the words of its error that are asked for.
+void load_in_time(const ScratchFolder &folder, const std::string &text, size_t objects, const std::string &error = "") {
     const std::clock_t start = std::clock();
     try {
-        load_scene(folder.write("scene.xml", text));
-    } catch (const Error &) {
+        const SceneDescription scene = load_scene(folder.write("scene.xml", text));
+        CHECK(error.empty());
+        CHECK(scene.meshes.size() + scene.lights.size() == objects);
+    } catch (const Error &told) {
+        CHECK_THAT(told.what(), Catch::Contains(error.empty() ? "no error" : error));
     }
     CHECK(double(std::clock() - start) / CLOCKS_PER_SEC < most_seconds);
     forget_warnings();
@@ -50,38 +53,44 @@ void load_in_time(const ScratchFolder &folder, const std::string &text) {
 TEST_CASE("XML of a hundred thousand objects, properties, attributes or names takes linear time", "[linear_readers]") {
     const ScratchFolder folder;
     SECTION("meshes") {
-        load_in_time(folder, scene_of(repeated([](int i) { return parallelogram(i, ""); })));
+        load_in_time(folder, scene_of(repeated([](int i) { return parallelogram(i, ""); })), many);
     }
     SECTION("BSDFs") {
-        load_in_time(folder, scene_of(repeated([](int i) { return parallelogram(i, "<bsdf type='mirror'/>"); })));
+        load_in_time(folder, scene_of(repeated([](int i) { return parallelogram(i, "<bsdf type='mirror'/>"); })), many);
     }
     SECTION("lights") {
         load_in_time(folder, scene_of(repeated([](int) {
                          return "<emitter type='point'><point name='position' value='1 2 3'/><color name='power' "
                                 "value='1 1 1'/></emitter>\n";
-                     })));
+                     })),
+                     many);
     }
     SECTION("properties of one object") {
-        load_in_time(folder, scene_of("<mesh type='parallelogram'>" + repeated([](int i) {
-                                          return fmt::format("<float name='p{}' value='1'/>\n", i);
-                                      }) +
-                                      "</mesh>"));
+        load_in_time(folder,
+                     scene_of("<mesh type='parallelogram'>" +
+                              repeated([](int i) { return fmt::format("<float name='p{}' value='1'/>\n", i); }) +
+                              "</mesh>"),
+                     0, "... and 99980 more mistakes");
     }
     SECTION("attributes of one tag") {
-        load_in_time(folder, scene_of("<mesh " + repeated([](int i) { return fmt::format("a{}='1' ", i); }) + "/>"));
+        load_in_time(folder, scene_of("<mesh " + repeated([](int i) { return fmt::format("a{}='1' ", i); }) + "/>"), 0,
+                     "<mesh> has more than 1000 attributes");
     }
     SECTION("transforms") {
         load_in_time(folder,
                      scene_of("<mesh type='obj'><transform name='toWorld'>" +
-                              repeated([](int) { return "<translate value='1 0 0'/>\n"; }) + "</transform></mesh>"));
+                              repeated([](int) { return "<translate value='1 0 0'/>\n"; }) + "</transform></mesh>"),
+                     0, "<mesh> lacks its property 'filename'");
     }
     SECTION("mistakes") {
-        load_in_time(folder, scene_of(repeated([](int) { return "<mesh type='opj'/>\n"; })));
+        load_in_time(folder, scene_of(repeated([](int) { return "<mesh type='opj'/>\n"; })), 0,
+                     "... and 99980 more mistakes");
     }
     SECTION("defaults and names without a value") {
         load_in_time(folder, scene_of(repeated([](int i) {
                          return fmt::format("<default name='d{}' value='1'/><mesh type='$e{}'/>\n", i, i);
-                     })));
+                     })),
+                     0, " more mistakes");
     }
 }
 
@@ -94,9 +103,11 @@ TEST_CASE("OBJ and MTL of a hundred thousand materials, libraries or names take 
                repeated([&](int i) { return fmt::format("usemtl m{}{}\nf 1 2 3\n", i, suffix); });
     };
     folder.write("a.mtl", repeated([](int i) { return fmt::format("newmtl m{}\nKd 0.5 0.5 0.5\n", i); }));
+    size_t meshes = many;
     SECTION("materials") { folder.write("a.obj", faces("")); }
     SECTION("names that no library has") { folder.write("a.obj", faces("x")); }
     SECTION("libraries that are missing") {
+        meshes = 1;
         folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\n" +
                                   repeated([](int i) { return fmt::format("mtllib none{}.mtl\n", i); }) + "f 1 2 3\n");
     }
@@ -104,7 +115,7 @@ TEST_CASE("OBJ and MTL of a hundred thousand materials, libraries or names take 
         folder.write("a.mtl", repeated([](int) { return "newmtl m0\n"; }));
         folder.write("a.obj", faces(""));
     }
-    load_in_time(folder, scene);
+    load_in_time(folder, scene, meshes);
 }
 
 TEST_CASE("A million warnings are told as a thousand", "[linear_readers]") {
