@@ -40,11 +40,11 @@ PixelWindow film_window(const Crop &crop, std::int64_t reach) {
 // Throws Error at the filter if a pixel would gather the samples of so many others that it takes hours, which nothing
 // interrupts.
 void check_gathered(const Filter &filter, int reach, const PixelWindow &film) {
-    constexpr uint most = 64 * 64;
+    constexpr uint most = 32 * 32;
     const uint wide = 2 * uint(reach) + 1, columns = std::min(wide, film.width), rows = std::min(wide, film.height);
     if (columns * std::uint64_t(rows) > most)
         throw Error(fmt::format("{}: {}: each pixel would gather the samples of {} x {} pixels; possible: a radius up "
-                                "to 31.5",
+                                "to 15.5",
                                 filter.place.text(), filter_text(filter), columns, rows));
 }
 

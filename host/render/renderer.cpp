@@ -43,8 +43,8 @@ constexpr unsigned cpu_tile_side = 8, cpu_items_a_core = 64, max_cpu_items_a_lau
 // GPU: one pixel for each work-item, and enough of them to hide the latency of its memory.
 constexpr unsigned gpu_tile_side = 1, gpu_items = 1u << 17, max_gpu_items_a_launch = 1u << 20;
 
-// Where paths may be endless: rounds of the loop in a launch. To keep and take up a work-item's state costs less than
-// 16 rounds of it; 2^24 rounds take seconds, whatever a clock says.
+// Where paths may be endless: rounds of the loop in a launch, at least some for each time that the state is kept, and
+// no more than take seconds, whatever a clock says.
 constexpr double least_rounds = 16, max_rounds = 1 << 24;
 
 unsigned ceil_div(unsigned a, unsigned b) { return (a + b - 1) / b; }

@@ -91,6 +91,7 @@ TEST_CASE("A render whose paths never end keeps to its time and to one Ctrl-C", 
             CHECK(timed.exit_code == 0);
             CHECK(read_exr(exr).number("opal.empty_pixels") == 64);
             std::filesystem::remove(exr);
+            std::filesystem::remove(said); // of the run before
             // The shell interrupts Opal once its progress shows that it renders, and kills it should it not end.
             const Outcome stopped = run_shell("timeout -k 1 120" + render + " >'" + said +
                                               "' 2>&1 & job=$!\n"

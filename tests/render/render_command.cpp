@@ -156,7 +156,7 @@ TEST_CASE("What cannot be rendered or written is refused, and nothing is left be
     check_refused(folder, folder.scene + " -o out/", "both images would be out/plain.exr", exit_usage);
     check_refused(folder, "--no-png -o /dev/full", "No space left on device", exit_failed);
     check_refused(folder, "--width 65535 --height 65535",
-                  "no room for the film of 65535 x 65535 pixels and its samples: ", exit_failed);
+                  "an image of 65535 x 65535 pixels: possible are 1.432e+09 pixels at the most", exit_failed);
     check_refused(folder, "--lanes 3", "unknown lanes '3'; available: auto, 1, 4, 8, 16", exit_usage);
     check_refused(folder, "--lighting bsdf --mis one-sample", "makes no sense", exit_failed);
 }
