@@ -14,7 +14,7 @@ struct ExitCodeRow {
 inline constexpr std::array<ExitCodeRow, 5> exit_codes = {{
     {"0", "done"},
     {"1", "failed: a file, a scene, a device; the last line says why"},
-    {"2", "the command line is wrong: an unknown command or flag, or a value that is not possible"},
+    {"2", "the command line is wrong: an unknown command or flag, an impossible value, an output that is an input"},
     {"3", "the check says no: verify, test, selftest, extremes, warp, compare --fail"},
     {"129, 130, 143", "interrupted by SIGHUP, Ctrl-C, SIGTERM; what was reached is kept"},
 }};

@@ -33,7 +33,7 @@ fs::path descriptor_folder() {
 // The path with the links of its folder followed; as it is where there is no such folder.
 fs::path in_true_folder(const fs::path &file) {
     std::error_code error;
-    const fs::path folder = fs::canonical(file.parent_path().empty() ? "." : file.parent_path(), error);
+    const fs::path folder = fs::canonical(folder_of(file), error);
     return error ? file : folder / file.filename();
 }
 
@@ -45,6 +45,8 @@ fs::path in_true_folder(const fs::path &file) {
 constexpr const char *read_and_written = "would be both read and written; name another file to write";
 
 } // namespace
+
+fs::path folder_of(const fs::path &file) { return file.parent_path().empty() ? "." : file.parent_path(); }
 
 fs::path target_of(const fs::path &file) {
     constexpr int most_links = 40; // as Linux has it

@@ -7,6 +7,9 @@
 
 namespace opal {
 
+// The folder of a file by its path; "." where the path is a name alone.
+std::filesystem::path folder_of(const std::filesystem::path &file);
+
 // The file itself: symbolic links are followed, a dangling one to the file that would be made. A link that names a
 // descriptor (/dev/stdout) stays. Throws Error for a loop of links.
 std::filesystem::path target_of(const std::filesystem::path &file);

@@ -117,14 +117,18 @@ std::string shortened_message(const std::string &message) {
         line.clear();
     };
     size_t begin = 0;
+    bool may_end = true; // a quoted value; where one has no end, no later one has
     for (size_t at = 0; at < text.size(); at++) {
-        if (at == begin && text[at] == '\'') // a quoted value, which may hold blanks
-            if (const size_t size = quoted_size(text.substr(at)); size > longest_word) {
+        if (at == begin && text[at] == '\'' && may_end) { // a quoted value, which may hold blanks
+            const size_t size = quoted_size(text.substr(at));
+            may_end = size > 0;
+            if (size > longest_word) {
                 line += shortened(text.substr(at, size), longest_word);
                 begin = at += size;
                 if (at == text.size())
                     break;
             }
+        }
         if (text[at] != ' ' && text[at] != '\t' && text[at] != '\n')
             continue;
         end_word(text.substr(begin, at - begin));

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr size_t most_of_pipe = size_t(1) << 30;
+constexpr size_t most_of_unknown_size = size_t(1) << 30;
 
 // A descriptor, or nothing where it is negative.
 class Descriptor {
@@ -68,15 +68,17 @@ std::string refusal(const struct stat &status, bool is_descriptor, Pipes pipes) 
     return "";
 }
 
-std::string read_all(const Descriptor &descriptor, const struct stat &status, const fs::path &file) {
-    const bool regular = S_ISREG(status.st_mode);
-    const size_t size = regular ? size_t(status.st_size) : 0;
+// at_begin: reads from the file's begin, and leaves the descriptor's offset, which it shares with its duplicates.
+std::string read_all(const Descriptor &descriptor, const struct stat &status, bool at_begin, const fs::path &file) {
+    const size_t size = S_ISREG(status.st_mode) ? size_t(status.st_size) : 0;
     check_memory(double(size), file.string() + ": cannot read");
     // One byte more than the size, so that the end is seen without growing. Files of /proc have the size 0.
     std::string bytes(size ? size + 1 : 65536, '\0');
     size_t count = 0;
     for (;;) {
-        const ssize_t more = read(descriptor.number(), bytes.data() + count, bytes.size() - count);
+        const size_t room = bytes.size() - count;
+        const ssize_t more = at_begin ? pread(descriptor.number(), bytes.data() + count, room, off_t(count))
+                                      : read(descriptor.number(), bytes.data() + count, room);
         if (more < 0 && errno == EINTR)
             continue;
         if (more < 0)
@@ -84,7 +86,7 @@ std::string read_all(const Descriptor &descriptor, const struct stat &status, co
         if (more == 0)
             break;
         count += size_t(more);
-        if (!regular && count > most_of_pipe)
+        if (size == 0 && count > most_of_unknown_size)
             throw Error(fmt::format("{}: cannot read: more than 1 GiB comes from it; a file may be larger, a pipe not",
                                     file.string()));
         if (count == bytes.size())
@@ -114,24 +116,36 @@ std::string read_new(const fs::path &file, Pipes pipes, bool &passes_by) {
     if (descriptor.number() < 0 || fstat(descriptor.number(), &status) != 0)
         cannot_read(file, errno);
     check_kind(file, status, named, pipes);
-    passes_by = named || !S_ISREG(status.st_mode);
-    return read_all(descriptor, status, file);
+    const bool regular = S_ISREG(status.st_mode);
+    passes_by = !regular;
+    return read_all(descriptor, status, regular && named, file);
 }
 
 std::mutex mutex;
 std::map<fs::path, std::string> passed_by; // what came through pipes
 
+std::optional<std::string> kept(const fs::path &file) {
+    const std::lock_guard lock(mutex);
+    const auto found = passed_by.find(file);
+    return found == passed_by.end() ? std::nullopt : std::optional(found->second);
+}
+
+void keep(const fs::path &file, const std::string &bytes) {
+    const std::lock_guard lock(mutex);
+    passed_by[file] = bytes;
+}
+
 } // namespace
 
 std::string read_file(const fs::path &file, Pipes pipes) {
-    const std::lock_guard lock(mutex);
-    if (const auto kept = passed_by.find(file); kept != passed_by.end() && pipes == Pipes::read)
-        return kept->second;
     try {
+        if (pipes == Pipes::read)
+            if (std::optional<std::string> bytes = kept(file))
+                return *std::move(bytes);
         bool passes_by = false;
         std::string bytes = read_new(file, pipes, passes_by);
         if (passes_by)
-            passed_by[file] = bytes;
+            keep(file, bytes);
         return bytes;
     } catch (const std::bad_alloc &) {
         cannot_read(file, ENOMEM);

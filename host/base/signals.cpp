@@ -3,6 +3,8 @@
 #include <array>
 #include <atomic>
 #include <csignal>
+#include <cstdint>
+#include <ctime>
 #include <initializer_list>
 
 #include <unistd.h>
@@ -13,6 +15,11 @@ namespace {
 
 volatile std::sig_atomic_t watched = 0;
 volatile std::sig_atomic_t received = 0; // the signal; 0: none
+std::atomic<int64_t> received_at = 0;    // of the first signal: ns of CLOCK_MONOTONIC; 0: none
+static_assert(std::atomic<int64_t>::is_always_lock_free);
+
+// One wish to end may come twice at once: `timeout` signals its command, and then its process group.
+constexpr int64_t one_wish = 500'000'000; // ns
 
 // What a handler reads: memory that is never freed, and numbers without locks.
 struct TemporaryFile {
@@ -22,10 +29,19 @@ struct TemporaryFile {
 std::array<TemporaryFile, 16> temporary_files; // an image's two files at once, and some more
 static_assert(std::atomic<int>::is_always_lock_free);
 
+int64_t now() {
+    timespec time{};
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return int64_t(time.tv_sec) * 1'000'000'000 + time.tv_nsec;
+}
+
 void receive(int signal) {
-    if (watched && received == 0 && signal != SIGQUIT) {
-        received = signal;
-        return;
+    if (watched && signal != SIGQUIT) {
+        int64_t first = 0;
+        if (received_at.compare_exchange_strong(first, now()))
+            received = signal;
+        if (first == 0 || now() - first < one_wish)
+            return;
     }
     for (const TemporaryFile &file : temporary_files)
         if (const int folder = file.folder; folder >= 0)

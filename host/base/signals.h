@@ -1,4 +1,4 @@
-// Interrupts: the first Ctrl-C asks the program to end and keep its results so far, the second ends it at once.
+// Interrupts: the first Ctrl-C asks the program to end and keep its results so far, a later one ends it at once.
 #pragma once
 
 #include "base/error.h"
@@ -7,8 +7,8 @@
 
 namespace opal {
 
-// From now on SIGINT, SIGTERM and SIGHUP set the flag that interrupted() returns; SIGHUP not under nohup. The second
-// such signal ends the process.
+// From now on SIGINT, SIGTERM and SIGHUP set the flag that interrupted() returns; SIGHUP not under nohup. Another
+// such signal ends the process, unless it comes within 0.5 s of the first.
 void watch_interrupts();
 bool interrupted();
 

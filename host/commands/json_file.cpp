@@ -9,9 +9,24 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <unistd.h>
 
 namespace opal {
+
+namespace {
+
+bool is_one_of(const OwnFiles &own, const std::filesystem::path &file) {
+    const std::string name = file.filename().string();
+    if (std::ranges::none_of(own.beginnings, [&](const std::string &start) { return name.starts_with(start); }))
+        return false;
+    const std::filesystem::path folder = std::filesystem::weakly_canonical(folder_of(file));
+    const std::filesystem::path whole = std::filesystem::weakly_canonical(folder_of(own.folder / name));
+    return folder == whole || folder.parent_path() == whole;
+}
+
+} // namespace
 
 OptionRow json_row(std::string &file, const std::string &what) {
     return {.flags = "--json",
@@ -24,12 +39,11 @@ bool names_stdout(const std::string &file) { return !file.empty() && descriptor_
 
 std::filesystem::path path_of(const std::string &file) { return file == "-" ? "/dev/stdout" : file; }
 
-void prepare_json(const std::string &file, const std::vector<std::filesystem::path> &own) {
+void prepare_json(const std::string &file, const OwnFiles &own) {
     if (file.empty())
         return;
-    for (const std::filesystem::path &other : own)
-        if (is_same_file(path_of(file), other))
-            throw UsageError(fmt::format("--json {}: the command writes this file itself, with other contents", file));
+    if (is_one_of(own, target_of(path_of(file))))
+        throw UsageError(fmt::format("--json {}: the command writes this file itself, with other contents", file));
     if (names_stdout(file))
         free_stdout();
     check_output(path_of(file));

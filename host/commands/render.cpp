@@ -2,6 +2,7 @@
 #include "base/command_line.h"
 #include "base/error.h"
 #include "base/exit_code.h"
+#include "base/file_use.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/progress.h"
@@ -105,7 +106,7 @@ struct WrittenImage {
 
 bool names_folder(const std::string &out) {
     std::error_code ignored; // what is wrong with the name is told by check_output
-    return out.ends_with('/') || std::filesystem::is_directory(out, ignored);
+    return out != "-" && (out.ends_with('/') || std::filesystem::is_directory(out, ignored));
 }
 
 // The files that -o asks for. Throws UsageError if it names no format that Opal writes.
@@ -183,9 +184,13 @@ Request prepare(const Options &o) {
     prepare_json(o.json);
     if (names_folder(o.out))
         make_folder(o.out);
-    for (const std::filesystem::path &file : {request.files.exr, request.files.png})
-        if (!file.empty())
-            check_output(file);
+    for (const std::filesystem::path &file : {request.files.exr, request.files.png}) {
+        if (file.empty())
+            continue;
+        check_writable(file);
+        if (o.scenes.size() == 1) // else check_several has noted them all
+            note_output(file);
+    }
     check_image_size(request.files, scene.camera.window(), o.layers == "variance");
     request.load_seconds = load.seconds();
     constexpr size_t most_faces = 300'000; // 0.03 s; `opal inspect` looks at all
@@ -275,6 +280,8 @@ int report(const Request &request, RenderedFilm &rendered, const RenderReport &r
         return interrupt_exit_code();
     if (!written.errors.empty())
         return exit_failed;
+    if (rendered.stopped.complete && fault)
+        tell_error(fault.text().c_str()); // again, so that the last line says why
     if (rendered.stopped.complete)
         return fault ? exit_failed : exit_done;
     warn(fmt::format("interrupted: the image holds {:.4g} of {} samples a pixel", render.spp(), rendered.stopped.spp));
@@ -321,7 +328,8 @@ int render_scene(const Options &o) {
                   o.layers == "variance");
 }
 
-// Throws UsageError if the images of several scenes cannot go to files of their own.
+// Throws UsageError if the images of several scenes cannot go to files of their own, or one is a scene. All are noted
+// before the first render, which would else write over a scene that comes later.
 void check_several(const Options &o) {
     if (!names_folder(o.out))
         throw UsageError(fmt::format("{} scenes: their images need a folder, -o FOLDER/", o.scenes.size()));
@@ -334,6 +342,14 @@ void check_several(const Options &o) {
     for (const std::string &scene : o.scenes)
         if (const auto [other, is_new] = scene_of.try_emplace(image_files(o, scene).text(), scene); !is_new)
             throw UsageError(fmt::format("{} and {}: both images would be {}", other->second, scene, other->first));
+    for (const std::string &scene : o.scenes)
+        note_input(scene);
+    for (const std::string &scene : o.scenes) {
+        const ImageFiles files = image_files(o, scene);
+        for (const std::filesystem::path &file : {files.exr, files.png})
+            if (!file.empty())
+                note_output(file);
+    }
 }
 
 // Renders one scene after the other. One that fails does not stop the others.

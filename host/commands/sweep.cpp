@@ -320,11 +320,9 @@ int run(const Options &o) {
     if (std::filesystem::exists(folder / (varied ? "sweep.json" : "vary.json"))) // index.html can be of one only
         throw Error(fmt::format("{}: holds a sweep {} --vary; give another folder with -o", folder.string(),
                                 varied ? "without" : "with"));
-    std::vector<std::filesystem::path> own;
-    for (const char *name :
-         {"sweep.json", "sweep.csv", "convergence.svg", "index.html", "reference.exr", "reference.png", "vary.json"})
-        own.push_back(folder / name);
-    prepare_json(o.json, own);
+    prepare_json(o.json, {folder,
+                          {"sweep.json", "sweep.csv", "convergence.svg", "index.html", "reference.", "equal_time_",
+                           "vary.json", ".sweep.lock"}});
     if (varied)
         return sweep_values(o, folder);
     SweepRecord record;

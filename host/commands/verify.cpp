@@ -236,13 +236,13 @@ int run(const Options &o) {
     const std::filesystem::path folder = o.out.empty() ? "verify_" + o.scene.file.stem().string() : o.out;
     if (!std::filesystem::is_directory(folder))
         check_writable(folder);
-    const std::filesystem::path own = folder / evidence_report;
+    const OwnFiles own = {folder, {evidence_report, "strategy_", "image.", "reference.", "difference.", "z.", "p."}};
     if (!o.vary.empty()) {
-        prepare_json(o.json, {own});
+        prepare_json(o.json, own);
         return verify_values(o, folder);
     }
     SceneDescription scene = load_scene(o.scene);
-    prepare_json(o.json, {own});
+    prepare_json(o.json, own);
     nlohmann::json report;
     const int code = verify(o, std::move(scene), folder, clock, report);
     if (!report.is_null()) // null: interrupted

@@ -136,6 +136,8 @@ int write_through(int named, std::string_view bytes) {
 }
 
 constexpr std::string_view temporary_start = ".opal-", temporary_end = ".tmp";
+constexpr int temporary_digits = 16; // hexadecimal, of 64 bits
+constexpr size_t temporary_size = temporary_start.size() + temporary_digits + temporary_end.size();
 
 // No name of a target, which may be as long as a name can be; random, so that nobody can guess it, and that processes
 // of one number in two containers do not meet.
@@ -143,11 +145,11 @@ std::string random_name() {
     uint64_t random = 0;
     if (getrandom(&random, sizeof random, 0) != sizeof random) // a kernel before 3.17; O_EXCL still holds
         random = uint64_t(std::chrono::steady_clock::now().time_since_epoch().count());
-    return fmt::format("{}{:016x}{}", temporary_start, random, temporary_end);
+    return fmt::format("{}{:0{}x}{}", temporary_start, random, temporary_digits, temporary_end);
 }
 
 Descriptor open_folder_of(const fs::path &target) {
-    const fs::path folder = target.parent_path().empty() ? "." : target.parent_path();
+    const fs::path folder = folder_of(target);
     return Descriptor(again([&] { return open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC); }));
 }
 
@@ -225,7 +227,7 @@ int replace(const fs::path &target, const struct stat *old, std::string_view byt
 void remove_leftovers(const fs::path &target) {
     constexpr time_t age = 24 * 3600;
     constexpr int most_entries = 10'000; // 3 ms
-    const fs::path folder = target.parent_path().empty() ? "." : target.parent_path();
+    const fs::path folder = folder_of(target);
     const std::unique_ptr<DIR, int (*)(DIR *)> listing(opendir(folder.c_str()), closedir);
     for (int i = 0; listing && i < most_entries; i++) {
         const dirent *const entry = readdir(listing.get());
@@ -233,7 +235,7 @@ void remove_leftovers(const fs::path &target) {
             return;
         const std::string_view name = entry->d_name;
         struct stat status {};
-        if (name.size() == random_name().size() && name.starts_with(temporary_start) && name.ends_with(temporary_end) &&
+        if (name.size() == temporary_size && name.starts_with(temporary_start) && name.ends_with(temporary_end) &&
             fstatat(dirfd(listing.get()), entry->d_name, &status, AT_SYMLINK_NOFOLLOW) == 0 &&
             S_ISREG(status.st_mode) && status.st_uid == geteuid() && time(nullptr) - status.st_mtime > age)
             unlinkat(dirfd(listing.get()), entry->d_name, 0);
@@ -241,7 +243,7 @@ void remove_leftovers(const fs::path &target) {
 }
 
 void check_folder(const fs::path &file) {
-    const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
+    const fs::path folder = folder_of(file);
     std::error_code error;
     if (file.filename().empty() || fs::is_directory(file, error))
         throw Error(fmt::format("{}: is a folder, not a file to write", file.string()));
@@ -268,7 +270,7 @@ std::optional<struct stat> status_of(const fs::path &file, const fs::path &targe
 bool is_kept_by_folder(const fs::path &target, const struct stat &status) {
     struct stat folder {};
     const uid_t user = geteuid();
-    return stat(target.parent_path().c_str(), &folder) == 0 && (folder.st_mode & S_ISVTX) && user != 0 &&
+    return stat(folder_of(target).c_str(), &folder) == 0 && (folder.st_mode & S_ISVTX) && user != 0 &&
            user != status.st_uid && user != folder.st_uid;
 }
 

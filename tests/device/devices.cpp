@@ -267,11 +267,11 @@ TEST_CASE("A process that asks a driver ends with its parent", "[devices]") {
     const std::string asker = folder / "asker";
     make_driver(folder, "slow",
                 "FILE *out = fopen(\"" + asker + "\", \"w\"); fprintf(out, \"%d\", getpid()); fclose(out); sleep(60);");
-    const Outcome outcome =
-        run_shell("OCL_ICD_FILENAMES= OCL_ICD_VENDORS=" + (folder / "vendors").string() + " " + OPAL_BINARY +
-                  " devices & opal=$!; until [ -s " + asker + " ]; do sleep 0.1; done; kill -9 $opal; wait $opal; " +
-                  "for i in $(seq 100); do grep -q '^State:.[^ZX]' /proc/$(cat " + asker +
-                  ")/status || exit 7; sleep 0.1; done"); // a zombie has ended
+    const Outcome outcome = run_shell("OCL_ICD_FILENAMES= OCL_ICD_VENDORS=" + (folder / "vendors").string() + " " +
+                                      OPAL_BINARY + " devices & opal=$!; for i in $(seq 600); do [ -s " + asker +
+                                      " ] && break; sleep 0.1; done; kill -9 $opal; wait $opal; " +
+                                      "for i in $(seq 100); do grep -q '^State:.[^ZX]' /proc/$(cat " + asker +
+                                      ")/status || exit 7; sleep 0.1; done"); // a zombie has ended
     CHECK(outcome.exit_code == 7);
 }
 

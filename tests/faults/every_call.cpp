@@ -1,4 +1,6 @@
 // Every error and signal at every system call that a render makes on its files, and SIGKILL at every call of a sweep.
+// The calls are those of faults_preload.cpp. It leaves out pread, pwrite and ftruncate: only the lock of a sweep, and
+// reading a descriptor that the user names, need them.
 #include "base/json.h"
 #include "support/faults.h"
 

@@ -1,6 +1,7 @@
 // Reading takes time in proportion to the file: what a file repeats a hundred thousand times is not looked for anew
 // each time. Readers that were quadratic took minutes to hours for these files.
 #include "base/log.h"
+#include "base/printable.h"
 #include "read/nori/load.h"
 #include "support/error_of.h"
 #include "support/scratch.h"
@@ -116,6 +117,12 @@ TEST_CASE("OBJ and MTL of a hundred thousand materials, libraries or names take 
         folder.write("a.obj", faces(""));
     }
     load_in_time(folder, scene, meshes);
+}
+
+TEST_CASE("A message of many quoted words without an end takes linear time", "[linear_readers]") {
+    const std::clock_t start = std::clock();
+    CHECK(shortened_message(repeated([](int) { return "'a "; })).size() < 3000);
+    CHECK(double(std::clock() - start) / CLOCKS_PER_SEC < 5); // a quadratic reader takes a minute
 }
 
 TEST_CASE("A million warnings are told as a thousand", "[linear_readers]") {

@@ -8,9 +8,11 @@
 
 #include <catch2/catch.hpp>
 
+#include <fcntl.h>
 #include <fstream>
 #include <sys/stat.h>
 #include <thread>
+#include <unistd.h>
 
 using namespace opal;
 using namespace opal::test;
@@ -56,6 +58,21 @@ TEST_CASE("A file is read whole, be it empty, long or a pipe that delivers piece
     std::thread writer([&] { std::ofstream(pipe, std::ios::binary) << text; });
     CHECK(read_file(pipe) == text);
     writer.join();
+}
+
+TEST_CASE("A file that a descriptor names is read anew each time, from its begin", "[read_file]") {
+    const ScratchFolder folder;
+    const int descriptor = open(folder.write("a", "first").c_str(), O_RDONLY | O_CLOEXEC);
+    REQUIRE(descriptor >= 0);
+    const std::string name = "/dev/fd/" + std::to_string(descriptor);
+    fs::create_symlink("/proc/self/fd/" + std::to_string(descriptor), folder / "link");
+    CHECK(read_file(name) == "first");
+    CHECK(read_file(name) == "first");
+    CHECK(read_file(folder / "link") == "first");
+    folder.write("a", "the second");
+    CHECK(read_file(name) == "the second");
+    CHECK(read_file(folder / "link") == "the second");
+    close(descriptor);
 }
 
 TEST_CASE("What cannot be read is an error with its name and reason", "[read_file]") {

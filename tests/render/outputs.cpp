@@ -51,6 +51,15 @@ TEST_CASE("No output of a render is an input or another output", "[outputs]") {
     }
     CHECK(run_shell(folder.in("cp s.xml a.exr && " OPAL_BINARY " render a.exr -o a.exr")).exit_code == exit_usage);
     CHECK_THAT(read_text(folder / "a.exr"), Catch::StartsWith("<scene>"));
+    fs::create_directory(folder / "out");
+    fs::create_symlink("../b.xml", folder / "out/s.exr"); // a scene that is read after the first render
+    CHECK(run_shell(folder.in("cp s.xml b.xml && " OPAL_BINARY " render s.xml b.xml --spp 1 -o out/")).exit_code ==
+          exit_usage);
+    CHECK(read_text(folder / "b.xml") == read_text(folder / "s.xml"));
+    for (const std::string own :
+         {"sweep s.xml -o out --json out/equal_time_1.exr", "sweep s.xml -o out --vary v=1,2 --json out/v=1/sweep.json",
+          "verify s.xml -o out --json out/z.png", "verify s.xml -o out/ --json out/image.exr"})
+        CHECK_THAT(run_shell(folder.in(OPAL_BINARY " " + own)).err, Catch::Contains("writes this file itself"));
 }
 
 TEST_CASE("stdout, a FIFO and a device get one file, in the format of the ending", "[outputs]") {

@@ -25,7 +25,7 @@ private:
     long calls_ = 0;
 };
 
-// EIO, ENOSPC, EINTR and short are errors, KILL, TERM and INT signals.
+// Those of faults_preload.cpp: EIO, ENOSPC, EINTR and short are errors, KILL, TERM and INT are signals.
 const std::vector<std::string> &fault_names();
 
 // The assignments before a command that make a call fail. An empty fault: calls are only counted, in `log`.

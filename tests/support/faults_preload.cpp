@@ -1,6 +1,6 @@
 // A library that tests preload into opal, so that a system call on files of a folder fails, or a signal comes there.
-// $OPAL_FAULT_FOLDER: the folder, absolute. $OPAL_FAULT: WHAT@K for the K-th such call (from 1): EIO, ENOSPC, EINTR
-// (once), EDQUOT as its errno; "short" (a read or write takes half); "KILL", "TERM", "INT" (a signal before the call).
+// $OPAL_FAULT_FOLDER: the folder, absolute. $OPAL_FAULT: WHAT@K for the K-th such call (from 1): EIO, ENOSPC
+// and EINTR fail with that errno; of "short" a read or write takes half; before KILL, TERM and INT the signal comes.
 // $OPAL_FAULT_LOG: a file that gets a line for each call, its name and its path.
 #include <atomic>
 #include <cerrno>
@@ -41,11 +41,7 @@ Fault wanted() {
     const std::string what(given, at);
     fault.at = std::atol(at + 1);
     fault.is_short = what == "short";
-    fault.error = what == "EIO"      ? EIO
-                  : what == "ENOSPC" ? ENOSPC
-                  : what == "EINTR"  ? EINTR
-                  : what == "EDQUOT" ? EDQUOT
-                                     : 0;
+    fault.error = what == "EIO" ? EIO : what == "ENOSPC" ? ENOSPC : what == "EINTR" ? EINTR : 0;
     fault.signal = what == "KILL" ? SIGKILL : what == "TERM" ? SIGTERM : what == "INT" ? SIGINT : 0;
     return fault;
 }
