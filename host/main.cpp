@@ -18,6 +18,8 @@
 #include <filesystem>
 #include <new>
 
+#include <unistd.h>
+
 namespace opal {
 namespace {
 
@@ -78,5 +80,7 @@ int main(int argc, char **argv) {
     } catch (const std::exception &error) {
         opal::tell_error(error);
     }
-    return opal::exit_code_after_output(code);
+    code = opal::exit_code_after_output(code);
+    dup2(STDERR_FILENO, STDOUT_FILENO); // drivers may print at the end of the process, too
+    return code;
 }

@@ -103,7 +103,9 @@ Ending ChildProcess::read_until(Clock::time_point deadline) {
             return ending;
         said_.append(bytes, static_cast<size_t>(count));
         ending.too_long = said_.size() > longest_answer;
-        if (ending.too_long)
+        // What lies in the pipe counts after the deadline, too, if the child has ended.
+        ending.in_time = Clock::now() < deadline || has_ended();
+        if (ending.too_long || !ending.in_time)
             return ending;
     }
 }

@@ -12,6 +12,7 @@
 #include <memory>
 #include <png.h>
 #include <pugixml.hpp>
+#include <xxhash.h>
 
 namespace opal {
 
@@ -35,7 +36,8 @@ std::vector<Part> libraries() {
             {"pugixml", fmt::format("{}.{}", PUGIXML_VERSION / 1000, PUGIXML_VERSION % 1000 / 10)},
             {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
             {"nlohmann_json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
-                                          NLOHMANN_JSON_VERSION_PATCH)}};
+                                          NLOHMANN_JSON_VERSION_PATCH)},
+            {"xxHash", fmt::format("{}.{}.{}", XXH_VERSION_MAJOR, XXH_VERSION_MINOR, XXH_VERSION_RELEASE)}};
 }
 
 int run(const std::string &json) {
@@ -53,7 +55,7 @@ int run(const std::string &json) {
     row("OpenCL loader", loader_path());
     for (const Driver &driver : find_drivers()) // none is opened: `opal devices` asks them
         row("OpenCL driver", driver.name.empty()             ? "none is installed"
-                             : driver.library.empty()        ? driver.name + " (names no library)"
+                             : driver.library.empty()        ? driver.name + ": " + driver.problem
                              : driver.library == driver.name ? driver.name
                                                              : driver.name + ", " + driver.library);
     write_json(json, "version", report);

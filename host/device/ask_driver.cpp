@@ -38,7 +38,7 @@ struct Probe {
 };
 
 Probe start_probe(const Driver &driver) {
-    std::vector<std::string> words = {"probe-platform"};
+    std::vector<std::string> words = {"probe-platform", "--to-parent"};
     if (!driver.library.empty())
         words.push_back(driver.library);
     else if (!driver.name.empty())
@@ -72,7 +72,7 @@ public:
     bool is_fresh() const {
         std::error_code error;
         const auto since = fs::file_time_type::clock::now() - fs::last_write_time(file_, error);
-        return !error && since < std::chrono::hours(1);
+        return !error && since >= since.zero() && since < std::chrono::hours(1); // a clock may have been put back
     }
     void keep() const {
         forget();
@@ -235,10 +235,12 @@ std::vector<DeviceInfo> probe_drivers(const std::vector<Driver> &drivers, double
     return devices;
 }
 
-void answer_probe(const std::string &library) {
-    begin_answer();
+void answer_probe(const std::string &library, bool to_parent) {
+    if (to_parent)
+        begin_answer();
     for_each_device(library, [](const DeviceInfo &info, const cl::Device &) { answer(dump(info)); });
-    end_answer();
+    if (to_parent)
+        end_answer();
 }
 
 } // namespace opal

@@ -27,9 +27,9 @@ std::string loader_path();
 // with a problem that says so.
 std::vector<DeviceInfo> probe_drivers(const std::vector<Driver> &drivers, double time_limit, bool ask_all = true);
 
-// Loads the driver into this process and answers a line for each device (the command probe-platform). Ends the process
-// if the answer goes to the process that started it.
-void answer_probe(const std::string &library);
+// Loads the driver into this process and answers a line for each device (the command probe-platform): to the process
+// that started it, and ends this one, or else to stdout.
+void answer_probe(const std::string &library, bool to_parent);
 
 // Sets the binary to start, by default that of this process. Tests set it, as they are not `opal`.
 void set_probe_binary(const std::filesystem::path &binary);

@@ -98,6 +98,8 @@ template <class Visit> void visit_files(const fs::path &folder, Visit visit) {
     }
 }
 
+bool is_temporary(const fs::path &file) { return file.filename().string().starts_with(temporary_prefix); }
+
 bool write_all(int descriptor, std::string_view bytes) {
     while (!bytes.empty()) {
         const ssize_t count = write(descriptor, bytes.data(), bytes.size());
@@ -170,8 +172,8 @@ CacheContents cache_contents(const fs::path &folder) {
 void clear_cache(const fs::path &folder) {
     visit_files(folder, [&](const fs::path &file, const struct stat &) {
         const fs::path extension = file.extension();
-        if ((extension == file_extension || extension == silent_extension) && unlink(file.c_str()) != 0 &&
-            errno != ENOENT)
+        if ((extension == file_extension || extension == silent_extension || is_temporary(file)) &&
+            unlink(file.c_str()) != 0 && errno != ENOENT)
             throw Error(fmt::format("{}: cannot be removed: {}", file.string(), std::strerror(errno)));
     });
 }
@@ -189,8 +191,7 @@ void trim_cache(const fs::path &folder, unsigned long long most_bytes) {
         if (file.extension() == file_extension) {
             files.push_back({status.st_mtim, file, (unsigned long long)status.st_size});
             bytes += files.back().bytes;
-        } else if (status.st_mtim.tv_sec < hour_ago &&
-                   (file.extension() == silent_extension || file.filename().string().starts_with(temporary_prefix)))
+        } else if (status.st_mtim.tv_sec < hour_ago && (file.extension() == silent_extension || is_temporary(file)))
             unlink(file.c_str());
     });
     std::ranges::sort(files, [](const File &a, const File &b) {
@@ -219,6 +220,8 @@ CachedProgram::CachedProgram(const std::string &identity, fs::path driver_files)
             throw Error(std::strerror(errno));
         if (fstat(opened, &status) != 0 || !S_ISREG(status.st_mode) || status.st_uid != geteuid())
             throw Error("it is no file of this user");
+        if ((unsigned long long)status.st_size > most_cache_bytes)
+            throw Error("it is too large");
         unpack(read_all(opened, size_t(status.st_size)));
         futimens(opened, nullptr); // trim_cache removes those first that are not used
     } catch (const Error &error) {
@@ -276,6 +279,12 @@ void CachedProgram::find_files() {
 void CachedProgram::store() {
     if (cache_folder().path.empty() || !cache_folder().problem.empty() || place_.empty())
         return;
+    // PoCL makes files in its folder when it compiles, which takes longer than the clocks of file systems count by.
+    struct stat status {};
+    if (stat(driver_files_.c_str(), &status) != 0 ||
+        (status.st_mtim.tv_sec == folder_changed_.tv_sec && status.st_mtim.tv_nsec == folder_changed_.tv_nsec))
+        return;
+    folder_changed_ = status.st_mtim;
     Sizes sizes = driver_sizes();
     std::erase_if(sizes, [](const auto &file) { return fs::path(file.first).filename() == last_access; });
     if (sizes == stored_)

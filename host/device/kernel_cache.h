@@ -3,6 +3,7 @@
 // size and hash are right. Processes may share the folder: files are renamed into place.
 #pragma once
 
+#include <ctime>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -62,6 +63,7 @@ private:
     std::filesystem::path place_; // the program's folder below driver_files_; empty: the driver keeps none
     bool cached_ = false;
     Sizes stored_;
+    timespec folder_changed_{}; // when driver_files_ was changed last, as store saw it
     std::set<std::string> launched_;
 };
 

@@ -13,9 +13,9 @@
 #include <cstdlib>
 #include <exception>
 #include <sstream>
+#include <utility>
 
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
@@ -80,11 +80,6 @@ std::string lacking(const Device &device) {
     return text;
 }
 
-timespec changed(const std::filesystem::path &folder) {
-    struct stat status {};
-    return stat(folder.c_str(), &status) == 0 ? status.st_mtim : timespec{};
-}
-
 // All that compiled kernels depend on.
 std::string identity_of(const Device &device, const std::string &key) {
     const DeviceInfo &info = device.info;
@@ -120,8 +115,14 @@ cl::Program build_program(const Device &device, const std::string &text, const B
     }
     if (file)
         file->find_files();
-    if (!(file && file->was_cached()) && lacks_linker(device))
-        throw Error(fmt::format("{}: the kernels cannot be linked: {}", device.info.name, linker_text()));
+    if (const bool cached = file && file->was_cached(); lacks_linker(device)) {
+        if (!cached)
+            throw Error(fmt::format("{}: the kernels cannot be linked: {}", device.info.name, linker_text()));
+        if (static bool warned = false; !std::exchange(warned, true))
+            warn(fmt::format("{}: the driver ends this process if it needs more than the compiled kernels in the "
+                             "cache: {}",
+                             device.info.name, linker_text()));
+    }
     const double taken = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     detail(fmt::format("build   {} for {} in {:.3g} s; flags {}; the driver says:\n{}",
                        options.kernels.empty() ? "the renderer" : options.kernels, device.info.name, taken,
@@ -152,12 +153,6 @@ LaunchScope::~LaunchScope() {
         file_->remove();
     if (!file_ || failed)
         return;
-    // PoCL makes files in its folder when it compiles, which takes longer than the clocks of file systems count by.
-    static timespec stored{};
-    const timespec now = changed(WorkFolder::own().driver_files());
-    if (now.tv_sec == stored.tv_sec && now.tv_nsec == stored.tv_nsec)
-        return;
-    stored = now;
     try {
         file_->store();
     } catch (const std::exception &error) {

@@ -14,6 +14,7 @@
 #include <cstring>
 #include <ctime>
 #include <fstream>
+#include <utility>
 #include <vector>
 
 #include <fcntl.h>
@@ -45,13 +46,21 @@ void distrust_marked(const fs::path &mark) {
     fs::path file;
     try {
         file = read_file(mark);
-    } catch (const Error &) { // there is none
+    } catch (const Error &) { // it is gone
         return;
     }
     if (file.is_absolute() && file.parent_path() == cache_folder().path && unlink(file.c_str()) == 0)
         warn(fmt::format("{}: a run ended while it launched these kernels for the first time: they are thrown away and "
                          "compiled anew",
                          file.string()));
+}
+
+// Forked processes share the work folder, and each has a mark of its own.
+void distrust_all_marked(const fs::path &folder) {
+    std::error_code error;
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+        if (at->path().filename().string().starts_with(mark_name))
+            distrust_marked(at->path());
 }
 
 // Removes the work folders of processes that were killed.
@@ -64,10 +73,11 @@ void remove_dead(const fs::path &parent) {
             !S_ISDIR(status.st_mode) || status.st_uid != geteuid())
             continue;
         const int lock = open((folder / lock_name).c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC);
-        const bool dead =
-            lock >= 0 ? flock(lock, LOCK_EX | LOCK_NB) == 0 : status.st_mtime < time(nullptr) - longest_start;
+        const bool has_none = lock < 0 && errno == ENOENT; // its process may be about to make it
+        const bool dead = has_none ? status.st_mtime < time(nullptr) - longest_start
+                                   : lock >= 0 && flock(lock, LOCK_EX | LOCK_NB) == 0;
         if (dead) {
-            distrust_marked(folder / mark_name);
+            distrust_all_marked(folder);
             fs::remove_all(folder, ignored);
         }
         if (lock >= 0)
@@ -111,50 +121,69 @@ bool WorkFolder::make_in(const fs::path &parent) {
         chmod(name.c_str(), S_IRWXU); // whatever the umask
         lock_ = open((path_ / lock_name).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
         struct stat status {};
-        if (lock_ >= 0 && flock(lock_, LOCK_EX) == 0 && fstat(lock_, &status) == 0 && status.st_nlink == 0) {
+        const bool locked = lock_ >= 0 && flock(lock_, LOCK_EX) == 0;
+        if (locked && fstat(lock_, &status) == 0 && status.st_nlink == 0) {
             close(lock_); // remove_dead of another process came between
             continue;
         }
-        for (const fs::path &folder : {driver_files(), empty()}) {
-            mkdir(folder.c_str(), S_IRWXU);
-            chmod(folder.c_str(), S_IRWXU);
-        }
-        return true;
+        const auto make = [](const fs::path &folder) {
+            return mkdir(folder.c_str(), S_IRWXU) == 0 && chmod(folder.c_str(), S_IRWXU) == 0;
+        };
+        if (locked && make(driver_files()) && make(empty()))
+            return true;
+        const int problem = errno;
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+        if (lock_ >= 0)
+            close(std::exchange(lock_, -1));
+        path_.clear();
+        errno = problem;
+        return false;
     }
 }
 
 WorkFolder::~WorkFolder() {
     std::error_code ignored;
-    if (getpid() == owner_ && !path_.empty())
-        fs::remove_all(path_, ignored);
+    if (getpid() != owner_ || path_.empty())
+        return;
+    distrust_all_marked(path_); // of forked processes that died
+    fs::remove_all(path_, ignored);
 }
 
-void WorkFolder::mark(const fs::path &file) { std::ofstream(path_ / mark_name) << file.string(); }
+fs::path WorkFolder::mark_file() const { return path_ / fmt::format("{}-{}", mark_name, getpid()); }
 
-void WorkFolder::unmark() { unlink((path_ / mark_name).c_str()); }
+void WorkFolder::mark(const fs::path &file) { std::ofstream(mark_file()) << file.string(); }
+
+void WorkFolder::unmark() { unlink(mark_file().c_str()); }
 
 namespace {
 
 int open_scopes = 0;
-int directory_before = -1; // -1: it cannot be opened; then no name in it can be looked up either
-int results = -1;          // stdout, while descriptor 1 is stderr
+int directory_before = -1;
+int results = -1; // stdout, while descriptor 1 is stderr
 
 } // namespace
 
 DriverScope::DriverScope() {
     const fs::path empty = WorkFolder::own().empty();
-    if (open_scopes++)
+    if (open_scopes) {
+        open_scopes++;
         return;
+    }
     directory_before = open("/proc/self/cwd", O_PATH | O_DIRECTORY | O_CLOEXEC);
     if (directory_before < 0)
         directory_before = open(".", O_PATH | O_DIRECTORY | O_CLOEXEC);
-    if (directory_before >= 0 && chdir(empty.c_str()) != 0 && chdir("/") != 0) // someone removed the empty one
-        throw Error(fmt::format("{}: cannot be entered: {}", empty.string(), std::strerror(errno)));
-    if (results < 0) {
-        results = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
-        std::atexit([] { dup2(STDERR_FILENO, STDOUT_FILENO); }); // drivers may print at the end of the process, too
+    if (directory_before < 0)
+        throw Error(fmt::format("the working directory cannot be opened: {}", std::strerror(errno)));
+    if (chdir(empty.c_str()) != 0 && chdir("/") != 0) { // someone removed the empty one
+        const int problem = errno;
+        close(directory_before);
+        throw Error(fmt::format("{}: cannot be entered: {}", empty.string(), std::strerror(problem)));
     }
+    if (results < 0)
+        results = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
     dup2(STDERR_FILENO, STDOUT_FILENO);
+    open_scopes++;
 }
 
 DriverScope::~DriverScope() {
@@ -163,10 +192,8 @@ DriverScope::~DriverScope() {
     std::fflush(stdout); // what the driver has printed: Opal's own text is never kept back
     if (results >= 0)
         dup2(results, STDOUT_FILENO);
-    if (directory_before >= 0) {
-        (void)!fchdir(directory_before); // also if the folder was removed meanwhile
-        close(directory_before);
-    }
+    (void)!fchdir(directory_before); // also if the folder was removed meanwhile
+    close(directory_before);
 }
 
 PoclCacheVariable::PoclCacheVariable() {

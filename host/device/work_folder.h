@@ -26,6 +26,7 @@ public:
 private:
     WorkFolder();
     bool make_in(const std::filesystem::path &parent);
+    std::filesystem::path mark_file() const; // of this process, which may be a fork of the owner
     std::filesystem::path path_;
     int lock_ = -1; // a locked file in it: the process lives
     pid_t owner_;

@@ -2,11 +2,14 @@
 // the choice of a device is explained.
 #include "base/json.h"
 #include "base/log.h"
+#include "base/process.h"
 #include "device/ask_driver.h"
+#include "device/kernel_cache.h"
 #include "device/opencl.h"
 #include "support/device.h"
 #include "support/scratch.h"
 
+#include <chrono>
 #include <cstdlib>
 
 #include <sys/stat.h>
@@ -16,13 +19,14 @@ using namespace opal::test;
 
 namespace {
 
-// A driver whose first entry point runs `body` (C). Loaders call it before anything else.
-Driver make_driver(const ScratchFolder &folder, const std::string &name, const std::string &body) {
-    const std::filesystem::path source =
-        folder.write(name + ".c", "#define _GNU_SOURCE\n#include <dlfcn.h>\n#include <stdio.h>\n"
-                                  "#include <stdlib.h>\n#include <unistd.h>\n"
-                                  "void *clGetExtensionFunctionAddress(const char *name) {\n    (void)name;\n    " +
-                                      body + "\n    return 0;\n}\n");
+// A driver whose first entry point runs `body` (C), which may call `functions`. Loaders call it before anything else.
+Driver make_driver(const ScratchFolder &folder, const std::string &name, const std::string &body,
+                   const std::string &functions = "") {
+    const std::filesystem::path source = folder.write(
+        name + ".c", "#define _GNU_SOURCE\n#include <dlfcn.h>\n#include <stdio.h>\n"
+                     "#include <stdlib.h>\n#include <unistd.h>\n" +
+                         functions + "void *clGetExtensionFunctionAddress(const char *name) {\n    (void)name;\n    " +
+                         body + "\n    return 0;\n}\n");
     const std::string library = folder / ("lib" + name + ".so");
     const Outcome built = run_shell("cc -shared -fPIC " + source.string() + " -o " + library);
     INFO(built.err);
@@ -97,6 +101,12 @@ TEST_CASE("A driver that crashes or hangs costs its line and no other", "[device
     CHECK(found[1].problem == "did not answer within 3 s");
     CHECK(found[2].problem == "");
     CHECK(found[2].memory > 0);
+}
+
+TEST_CASE("A process that goes on answering is killed at its deadline", "[devices]") {
+    using Clock = ChildProcess::Clock;
+    ChildProcess process("/bin/sh", {"-c", "for i in $(seq 100); do echo >&3; sleep 0.02; done"}); // more than 2 s
+    CHECK(!process.finish(Clock::now() + std::chrono::milliseconds(500)).in_time);
 }
 
 TEST_CASE("opal devices survives a crashing driver beside a good one", "[devices]") {
@@ -223,6 +233,45 @@ TEST_CASE("A driver that prints hides no device and is not mixed with results", 
     CHECK(nlohmann::json::accept(rendered.out));
 }
 
+TEST_CASE("What a driver prints at the end of the process is not mixed with results", "[devices]") {
+    const std::string real = std::filesystem::canonical(good_driver().library).string();
+    const ScratchFolder folder;
+    const Driver farewell = make_driver(folder, "farewell", R"(static void *real;
+    if (!real) { real = dlopen(")" + real + R"(", RTLD_NOW); atexit(say); }
+    void *(*find)(const char *) = (void *(*)(const char *))dlsym(real, "clGetExtensionFunctionAddress");
+    return find(name);)",
+                                        "static void say(void) { printf(\"farewell\"); }\n");
+    const Outcome rendered = run_shell("OCL_ICD_FILENAMES= OCL_ICD_VENDORS=" + (folder / "vendors").string() + " " +
+                                       OPAL_BINARY + " render " OPAL_SOURCE_DIR "/scenes/cbox_mis.xml --width 8 " +
+                                       "--height 8 --spp 1 --quiet --json - -o " + (folder / "out.exr").string());
+    CHECK(rendered.exit_code == 0);
+    CHECK(nlohmann::json::accept(rendered.out));
+    CHECK_THAT(rendered.err, Catch::Contains("farewell"));
+}
+
+TEST_CASE("opal probe-platform prints what a descriptor 3 of the user's does not get", "[devices]") {
+    const ScratchFolder folder;
+    const Outcome outcome = run_shell(std::string(OPAL_BINARY) + " probe-platform " + good_driver().library + " 3> " +
+                                      (folder / "third").string());
+    CHECK(outcome.exit_code == 0);
+    CHECK_THAT(outcome.out, Catch::StartsWith("{"));
+    CHECK(read_text(folder / "third").empty());
+}
+
+TEST_CASE("A process that shares the work folder and dies in a first launch costs those kernels alone", "[devices]") {
+    const ScratchFolder folder;
+    const std::string kernels = folder.write("cache/opal/some.kernels", "kernels").string();
+    std::filesystem::permissions(folder / "cache/opal", std::filesystem::perms::owner_all);
+    make_driver(folder, "dying",
+                "FILE *out = fopen(\"../first_launch-1\", \"w\"); fputs(\"" + kernels +
+                    "\", out); fclose(out); abort();"); // processes start in a folder of that one
+    const Outcome outcome =
+        devices_with("env -u POCL_CACHE_DIR OCL_ICD_FILENAMES= OCL_ICD_VENDORS=" + (folder / "vendors").string() +
+                     " XDG_CACHE_HOME=" + (folder / "cache").string());
+    CHECK_THAT(outcome.err, Catch::Contains("warning: " + kernels + ": a run ended while it launched"));
+    CHECK(!std::filesystem::exists(kernels));
+}
+
 TEST_CASE("An .icd file that cannot be read is named, with the reason", "[devices]") {
     const ScratchFolder folder;
     std::filesystem::create_symlink(folder / "nothing", folder / "dangling.icd");
@@ -236,6 +285,9 @@ TEST_CASE("An .icd file that cannot be read is named, with the reason", "[device
                                 Catch::Contains("pipe.icd: is no regular file") &&
                                 Catch::Contains("relative.icd: cannot be loaded (./libours.so: "));
     CHECK_THAT(outcome.err, Catch::Contains("dangling.icd: cannot read"));
+    CHECK_THAT(
+        run_shell("OCL_ICD_FILENAMES= OCL_ICD_VENDORS=" + folder.path().string() + " " OPAL_BINARY " version").out,
+        Catch::Contains("dangling.icd: cannot read: No such file or directory") && Catch::Contains("xxHash "));
 }
 
 TEST_CASE("A driver that hangs is not asked again within the hour, unless no other has a device", "[devices]") {
@@ -259,6 +311,16 @@ TEST_CASE("A driver that hangs is not asked again within the hour, unless no oth
     CHECK(problem({hung}, false) == "did not answer within 2 s");
     CHECK(problem({hung, good}, true) == "did not answer within 2 s");
     CHECK(times() == 3);
+
+    std::filesystem::path note; // of the driver's silence, from a clock that was put back since
+    for (const auto &entry : std::filesystem::directory_iterator(cache_folder().path))
+        if (entry.path().extension() == silent_extension &&
+            (note.empty() || entry.last_write_time() > std::filesystem::last_write_time(note)))
+            note = entry.path();
+    REQUIRE(!note.empty());
+    std::filesystem::last_write_time(note, std::filesystem::file_time_type::clock::now() + std::chrono::hours(2));
+    CHECK(problem({hung, good}, false) == "did not answer within 2 s");
+    CHECK(times() == 4);
     forget_warnings();
 }
 

@@ -74,6 +74,12 @@ TEST_CASE("A damaged file of the cache is thrown away, and its kernels are compi
         CHECK(mode_of(file) == 0600);
 
     const fs::path longer = place.files()[0], shorter = place.files()[1];
+    fs::resize_file(longer, most_cache_bytes + 1); // sparse
+    const Outcome huge = place.render();
+    CHECK(huge.exit_code == 0);
+    CHECK_THAT(huge.err, Catch::Contains("warning: " + longer.string() +
+                                         ": a damaged file of the cache of kernels (it "
+                                         "is too large)"));
     std::ofstream(longer, std::ios::app) << 'x';
     fs::resize_file(shorter, fs::file_size(shorter) / 2);
     const Outcome damaged = place.render();
@@ -95,6 +101,12 @@ TEST_CASE("A damaged file of the cache is thrown away, and its kernels are compi
     CHECK_THAT(distrusting.err, Catch::StartsWith("warning: " + longer.string() + ": a run ended while it launched"));
     CHECK(read_text(place.folder / "out.png") == image);
     CHECK(place.files().size() == 2);
+
+    // A lock that cannot be opened may be a live process's.
+    fs::create_directories(dead / "lock");
+    fs::last_write_time(dead, fs::file_time_type::clock::now() - std::chrono::hours(1));
+    CHECK(place.render().exit_code == 0);
+    CHECK(fs::exists(dead));
 
     // A cache that nothing can be added to costs its use, not the render.
     fs::remove_all(place.cache);
@@ -184,7 +196,9 @@ TEST_CASE("The cache is trimmed to the files that were used last, told and empti
     CHECK(full["folder"] == place.cache.string());
     CHECK(full["programs"] == 1);
     CHECK(full["bytes"] == 1000);
+    const fs::path half = write(".opal-tmp-123456", 0);
     CHECK(told("--clear")["programs"] == 0);
+    CHECK(!fs::exists(half));
     CHECK(!fs::exists(latest));
     CHECK(fs::exists(other));
 }
@@ -201,6 +215,9 @@ TEST_CASE("What is missing to build kernels is named", "[kernel_cache]") {
     CHECK(limited.exit_code == 1);
     CHECK_THAT(limited.err, Catch::Contains("do not build") && Catch::Contains("(ulimit -f)"));
     CHECK(place.render().exit_code == 0);
+    const Outcome kept = place.render("PATH=/nonexistent");
+    CHECK(kept.exit_code == 0);
+    CHECK_THAT(kept.err, Catch::StartsWith("warning: ") && Catch::Contains("PoCL needs the program ld"));
 }
 
 TEST_CASE("The working directory is the user's again after a driver was used, also a removed one", "[kernel_cache]") {
