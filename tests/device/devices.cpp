@@ -240,7 +240,7 @@ TEST_CASE("What a driver prints at the end of the process is not mixed with resu
     if (!real) { real = dlopen(")" + real + R"(", RTLD_NOW); atexit(say); }
     void *(*find)(const char *) = (void *(*)(const char *))dlsym(real, "clGetExtensionFunctionAddress");
     return find(name);)",
-                                        "static void say(void) { printf(\"farewell\"); }\n");
+                                        "static void say(void) { printf(\"farewell\"); fflush(stdout); }\n");
     const Outcome rendered = run_shell("OCL_ICD_FILENAMES= OCL_ICD_VENDORS=" + (folder / "vendors").string() + " " +
                                        OPAL_BINARY + " render " OPAL_SOURCE_DIR "/scenes/cbox_mis.xml --width 8 " +
                                        "--height 8 --spp 1 --quiet --json - -o " + (folder / "out.exr").string());
