@@ -105,4 +105,16 @@ void note_output(const fs::path &file) {
     outputs.insert(fs::absolute(file));
 }
 
+void check_own_files(const fs::path &folder, const std::vector<std::string> &beginnings) {
+    const std::lock_guard lock(mutex);
+    std::error_code error;
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+        const std::string name = at->path().filename().string();
+        if (std::ranges::any_of(beginnings, [&](const std::string &start) { return name.starts_with(start); }))
+            for (const fs::path &input : inputs)
+                if (is_same_file(at->path(), input))
+                    refuse(at->path(), input, read_and_written);
+    }
+}
+
 } // namespace opal

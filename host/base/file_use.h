@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace opal {
 
@@ -24,5 +26,9 @@ bool is_same_file(const std::filesystem::path &a, const std::filesystem::path &b
 // twice. All files must be noted before the work begins.
 void note_input(const std::filesystem::path &file);
 void note_output(const std::filesystem::path &file);
+
+// The same for files that a command writes into a folder of its own: throws UsageError if a file whose name begins so
+// lies there and was read before, by whatever name.
+void check_own_files(const std::filesystem::path &folder, const std::vector<std::string> &beginnings);
 
 } // namespace opal

@@ -145,6 +145,8 @@ void clean_search_paths(char **arguments) {
         return true;
     };
     clean("PATH", false);
+    if (!std::getenv("PATH")) // as execvp(3) takes it; drivers' compilers find no linker without it
+        setenv("PATH", "/bin:/usr/bin", 1);
     if (clean("LD_LIBRARY_PATH", true))
         execv("/proc/self/exe", arguments); // returns where there is no /proc: then some drivers may not be found
 }

@@ -50,15 +50,20 @@ void receive(int signal) {
     std::raise(signal); // comes after the handler's end
 }
 
+bool is_ignored(int signal) {
+    struct sigaction action {};
+    return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+// As the process was started: under nohup. Drivers' compilers install handlers of their own later.
+const bool hangup_ignored = is_ignored(SIGHUP);
+
 // Installs the handler. all: also where the signal is ignored, as SIGINT in a shell's background job.
 void handle(int signal, bool all) {
-    struct sigaction action {
-    }, before{};
-    action.sa_handler = receive;
+    struct sigaction action {};
+    action.sa_handler = (signal == SIGHUP && hangup_ignored) || (!all && is_ignored(signal)) ? SIG_IGN : receive;
     action.sa_flags = SA_RESTART;
-    sigaction(signal, &action, &before);
-    if (!all && before.sa_handler == SIG_IGN)
-        sigaction(signal, &before, nullptr);
+    sigaction(signal, &action, nullptr);
 }
 
 } // namespace
@@ -69,6 +74,9 @@ void watch_interrupts() {
     handle(SIGTERM, true);
     handle(SIGHUP, false);
 }
+
+EndedBySignals::EndedBySignals() : before_(watched) { watched = 0; }
+EndedBySignals::~EndedBySignals() { watched = before_; }
 
 bool interrupted() { return received != 0; }
 

@@ -12,6 +12,19 @@ namespace opal {
 void watch_interrupts();
 bool interrupted();
 
+// While one lives, a signal ends the process at once: for work that cannot be stopped and that keeps nothing, such as
+// compiling.
+class EndedBySignals {
+public:
+    EndedBySignals();
+    ~EndedBySignals();
+    EndedBySignals(const EndedBySignals &) = delete;
+    EndedBySignals &operator=(const EndedBySignals &) = delete;
+
+private:
+    const int before_;
+};
+
 // The exit code of a command that was interrupted and has kept its results: 128 + the signal, as shells have it. 130
 // for Ctrl-C, 143 for SIGTERM, 129 for SIGHUP.
 int interrupt_exit_code();

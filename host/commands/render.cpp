@@ -280,10 +280,14 @@ int report(const Request &request, RenderedFilm &rendered, const RenderReport &r
         return interrupt_exit_code();
     if (!written.errors.empty())
         return exit_failed;
-    if (rendered.stopped.complete && fault)
-        tell_error(fault.text().c_str()); // again, so that the last line says why
+    const bool empty = render.statistics.samples + render.statistics.invalid == 0;
+    if (rendered.stopped.complete && (fault || empty)) {
+        tell_error(fault ? fault.text().c_str() // again, so that the last line says why
+                         : "no sample was finished in the time: the image shows nothing");
+        return exit_failed;
+    }
     if (rendered.stopped.complete)
-        return fault ? exit_failed : exit_done;
+        return exit_done;
     warn(fmt::format("interrupted: the image holds {:.4g} of {} samples a pixel", render.spp(), rendered.stopped.spp));
     return interrupt_exit_code();
 }

@@ -2,6 +2,7 @@
 #include "base/command_line.h"
 #include "base/error.h"
 #include "base/exit_code.h"
+#include "base/file_use.h"
 #include "base/hash.h"
 #include "base/json.h"
 #include "base/log.h"
@@ -37,6 +38,10 @@
 namespace opal {
 
 namespace {
+
+// What the names of the files begin with that a sweep writes into its folder.
+const std::vector<std::string> own_files = {"sweep.json", "sweep.csv",   "convergence.svg", "index.html",
+                                            "reference.", "equal_time_", "vary.json",       ".sweep.lock"};
 
 struct Options {
     SceneOptions scene;
@@ -207,6 +212,8 @@ int run_part_apart(SweepPart part, const SweepPlan &plan, const DevicePick &pick
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
     record = load_record(plan.folder);
+    if (interrupted())
+        return interrupt_exit_code();
     if (WIFSIGNALED(status))
         throw Error(fmt::format("{}: the driver ended the process by signal {}", pick.info.name, WTERMSIG(status)));
     return WEXITSTATUS(status);
@@ -234,6 +241,7 @@ int sweep(const Options &o, SceneDescription scene, const std::filesystem::path 
     const std::vector<DevicePick> devices = pick_devices(o);
     std::vector<Candidate> candidates = cross(strategies, devices);
     const SweepRecord fresh = fresh_record(o, scene, sources, reference_hash, devices);
+    check_own_files(plan.folder, own_files); // before the record is read, which is both
     make_folder(plan.folder);
     const FolderLock lock(plan.folder);
     record = resume(plan.folder, fresh);
@@ -320,9 +328,7 @@ int run(const Options &o) {
     if (std::filesystem::exists(folder / (varied ? "sweep.json" : "vary.json"))) // index.html can be of one only
         throw Error(fmt::format("{}: holds a sweep {} --vary; give another folder with -o", folder.string(),
                                 varied ? "without" : "with"));
-    prepare_json(o.json, {folder,
-                          {"sweep.json", "sweep.csv", "convergence.svg", "index.html", "reference.", "equal_time_",
-                           "vary.json", ".sweep.lock"}});
+    prepare_json(o.json, {folder, own_files});
     if (varied)
         return sweep_values(o, folder);
     SweepRecord record;

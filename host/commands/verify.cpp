@@ -1,6 +1,7 @@
 // opal verify: do all unbiased strategies agree on a scene?
 #include "base/error.h"
 #include "base/exit_code.h"
+#include "base/file_use.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/progress.h"
@@ -242,6 +243,7 @@ int run(const Options &o) {
         return verify_values(o, folder);
     }
     SceneDescription scene = load_scene(o.scene);
+    check_own_files(folder, own.beginnings);
     prepare_json(o.json, own);
     nlohmann::json report;
     const int code = verify(o, std::move(scene), folder, clock, report);

@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "base/progress.h"
+#include "base/signals.h"
 #include "device/program.h"
 #include "device/scene_buffers.h"
 #include "shared/film.h"
@@ -129,6 +130,7 @@ Renderer::Renderer(const Device &device, FlatScene scene, const RenderOptions &o
                  fmt::format("an image of {}", what));
 
     const RunningProgress compiling("compile");
+    const EndedBySignals compilation;
     double film_seconds = 0;
     const cl::Program program = build_program(device, program_text(scene.features, options.build, *options.sources),
                                               options.build, &compile_seconds_);

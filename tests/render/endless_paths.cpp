@@ -88,7 +88,8 @@ TEST_CASE("A render whose paths never end keeps to its time and to one Ctrl-C", 
                                        kernel + " -o '" + exr + "'";
             const Outcome timed = run_shell("timeout 60" + render + " --quiet --time 0.2s");
             INFO(timed.err);
-            CHECK(timed.exit_code == 0);
+            CHECK(timed.exit_code == 1);
+            CHECK_THAT(timed.err, Catch::Contains("no sample was finished in the time"));
             CHECK(read_exr(exr).number("opal.empty_pixels") == 64);
             std::filesystem::remove(exr);
             std::filesystem::remove(said); // of the run before

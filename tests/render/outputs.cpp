@@ -137,3 +137,23 @@ TEST_CASE("An image that a PNG cannot hold is refused before rendering", "[outpu
     CHECK(folder.files() == files);
     CHECK(run_shell(folder.render("-o o.exr --no-png --crop 0,0,1,4")).exit_code == 0);
 }
+
+TEST_CASE("A sweep writes over nothing that it reads, by whatever name", "[outputs]") {
+    const ScratchFolder folder;
+    const std::string text = read_text(OPAL_SOURCE_DIR "/scenes/furnace.xml"),
+                      in = "cd '" + folder.path().string() + "' && ";
+    folder.write("a.xml", text);
+    folder.write("d/sweep.csv", text);
+    folder.write("l/other.txt", "");
+    std::filesystem::create_symlink("../a.xml", folder / "l/equal_time_1.exr");
+    const std::string opal = in + OPAL_BINARY " sweep ", rest = " --width 8 --spp 1 --replicates 2 --quiet -o ";
+    for (const std::string &command : {opal + "d/sweep.csv" + rest + "d", opal + "a.xml" + rest + "l"}) {
+        INFO(command);
+        const Outcome outcome = run_shell(command);
+        INFO(outcome.err);
+        CHECK(outcome.exit_code == exit_usage);
+        CHECK_THAT(outcome.err, Catch::Contains("would be both read and written"));
+    }
+    CHECK(read_text(folder / "a.xml") == text);
+    CHECK(read_text(folder / "d/sweep.csv") == text);
+}
