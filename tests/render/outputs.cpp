@@ -139,21 +139,19 @@ TEST_CASE("An image that a PNG cannot hold is refused before rendering", "[outpu
 }
 
 TEST_CASE("A sweep writes over nothing that it reads, by whatever name", "[outputs]") {
-    const ScratchFolder folder;
-    const std::string text = read_text(OPAL_SOURCE_DIR "/scenes/furnace.xml"),
-                      in = "cd '" + folder.path().string() + "' && ";
-    folder.write("a.xml", text);
-    folder.write("d/sweep.csv", text);
+    const Scene folder;
+    const std::string text = read_text(folder / "s.xml");
+    folder.write("sweep.csv", text);
     folder.write("l/other.txt", "");
-    std::filesystem::create_symlink("../a.xml", folder / "l/equal_time_1.exr");
-    const std::string opal = in + OPAL_BINARY " sweep ", rest = " --width 8 --spp 1 --replicates 2 --quiet -o ";
-    for (const std::string &command : {opal + "d/sweep.csv" + rest + "d", opal + "a.xml" + rest + "l"}) {
-        INFO(command);
-        const Outcome outcome = run_shell(command);
+    fs::create_symlink("../s.xml", folder / "l/equal_time_1.exr");
+    for (const std::string names : {"sweep.csv -o .", "s.xml -o l"}) {
+        INFO(names);
+        const Outcome outcome =
+            run_shell(folder.in(OPAL_BINARY " sweep --width 8 --spp 1 --replicates 2 --quiet " + names));
         INFO(outcome.err);
         CHECK(outcome.exit_code == exit_usage);
         CHECK_THAT(outcome.err, Catch::Contains("would be both read and written"));
     }
-    CHECK(read_text(folder / "a.xml") == text);
-    CHECK(read_text(folder / "d/sweep.csv") == text);
+    CHECK(read_text(folder / "s.xml") == text);
+    CHECK(read_text(folder / "sweep.csv") == text);
 }
