@@ -182,7 +182,7 @@ const std::vector<Control> films = {
      "crops",
      check_crops},
     {{"filters that reach their own pixel alone", "film/gather.cl",
-      "int reach = (int)ceil(settings->filter_radius - 0.5f);", "int reach = 0;"},
+      "float reach = max(ceil(settings->filter_radius - 0.5f), 0.0f);", "float reach = 0;"},
      "filters",
      check_filters},
     {{"the image mirrored", "cameras/perspective.cl", "(1 - 2 * film.x)", "(2 * film.x - 1)"},
