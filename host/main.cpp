@@ -66,6 +66,7 @@ int exit_code_after_output(int code) {
 int main(int argc, char **argv) {
     opal::return_large_blocks();
     opal::prepare_streams();
+    opal::keep_hangup_ignored();
     opal::clean_search_paths(argv);
     opal::set_command_line(argc, argv);
     int code = opal::exit_failed;

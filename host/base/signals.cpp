@@ -55,18 +55,24 @@ bool is_ignored(int signal) {
     return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
-// As the process was started: under nohup. Drivers' compilers install handlers of their own later.
-const bool hangup_ignored = is_ignored(SIGHUP);
-
 // Installs the handler. all: also where the signal is ignored, as SIGINT in a shell's background job.
 void handle(int signal, bool all) {
     struct sigaction action {};
-    action.sa_handler = (signal == SIGHUP && hangup_ignored) || (!all && is_ignored(signal)) ? SIG_IGN : receive;
+    action.sa_handler = !all && is_ignored(signal) ? SIG_IGN : receive;
     action.sa_flags = SA_RESTART;
     sigaction(signal, &action, nullptr);
 }
 
 } // namespace
+
+void keep_hangup_ignored() {
+    if (!is_ignored(SIGHUP))
+        return;
+    sigset_t hangup;
+    sigemptyset(&hangup);
+    sigaddset(&hangup, SIGHUP);
+    sigprocmask(SIG_BLOCK, &hangup, nullptr);
+}
 
 void watch_interrupts() {
     watched = 1;

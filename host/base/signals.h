@@ -7,6 +7,10 @@
 
 namespace opal {
 
+// Call first in main: under nohup, SIGHUP is blocked. Drivers' compilers install handlers of their own, which remove
+// their temporary files when it comes.
+void keep_hangup_ignored();
+
 // From now on SIGINT, SIGTERM and SIGHUP set the flag that interrupted() returns; SIGHUP not under nohup. Another
 // such signal ends the process, unless it comes within 0.5 s of the first.
 void watch_interrupts();
