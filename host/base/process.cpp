@@ -1,5 +1,6 @@
 #include "base/process.h"
 
+#include "base/descriptor.h"
 #include "base/error.h"
 #include "base/log.h"
 
@@ -162,13 +163,7 @@ void begin_answer() {
 void answer(const std::string &line) {
     if (!answering)
         return print("{}\n", line);
-    const std::string text = line + '\n';
-    for (size_t done = 0; done < text.size();) {
-        const ssize_t count = write(answer_descriptor, text.data() + done, text.size() - done);
-        if (count < 0 && errno != EINTR)
-            return;
-        done += count > 0 ? static_cast<size_t>(count) : 0;
-    }
+    write_all(answer_descriptor, line + '\n'); // a parent that has ended needs no answer
 }
 
 void end_answer() { _exit(0); }

@@ -1,5 +1,6 @@
 #include "base/read_file.h"
 
+#include "base/descriptor.h"
 #include "base/error.h"
 #include "base/file_use.h"
 #include "base/memory.h"
@@ -26,32 +27,13 @@ namespace {
 
 constexpr size_t most_of_unknown_size = size_t(1) << 30;
 
-// A descriptor, or nothing where it is negative.
-class Descriptor {
-public:
-    explicit Descriptor(int number) : number_(number) {}
-    ~Descriptor() {
-        if (number_ >= 0)
-            close(number_);
-    }
-    Descriptor(const Descriptor &) = delete;
-    Descriptor &operator=(const Descriptor &) = delete;
-    int number() const { return number_; }
-
-private:
-    const int number_;
-};
-
 // A named descriptor is duplicated: opening it anew fails for a socket, and where the user may not open the file.
 int open_to_read(const fs::path &file, std::optional<int> named, Pipes pipes) {
-    for (;;) {
-        // Without O_NONBLOCK a FIFO that nobody writes to is waited for.
-        const int number =
-            named ? fcntl(*named, F_DUPFD_CLOEXEC, 0)
-                  : open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | (pipes == Pipes::refused ? O_NONBLOCK : 0));
-        if (number >= 0 || errno != EINTR)
-            return number;
-    }
+    // Without O_NONBLOCK a FIFO that nobody writes to is waited for.
+    return again([&] {
+        return named ? fcntl(*named, F_DUPFD_CLOEXEC, 0)
+                     : open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | (pipes == Pipes::refused ? O_NONBLOCK : 0));
+    });
 }
 
 // Why a file of this kind is not read; empty: it is.
@@ -77,10 +59,10 @@ std::string read_all(const Descriptor &descriptor, const struct stat &status, bo
     size_t count = 0;
     for (;;) {
         const size_t room = bytes.size() - count;
-        const ssize_t more = at_begin ? pread(descriptor.number(), bytes.data() + count, room, off_t(count))
-                                      : read(descriptor.number(), bytes.data() + count, room);
-        if (more < 0 && errno == EINTR)
-            continue;
+        const ssize_t more = again([&] {
+            return at_begin ? pread(descriptor, bytes.data() + count, room, off_t(count))
+                            : read(descriptor, bytes.data() + count, room);
+        });
         if (more < 0)
             cannot_read(file, errno);
         if (more == 0)
@@ -113,7 +95,7 @@ std::string read_new(const fs::path &file, Pipes pipes, bool &passes_by) {
     check_kind(file, status, named, pipes); // before it is opened, which does something to some devices
     note_input(file);
     const Descriptor descriptor(open_to_read(file, named, pipes));
-    if (descriptor.number() < 0 || fstat(descriptor.number(), &status) != 0)
+    if (descriptor < 0 || fstat(descriptor, &status) != 0)
         cannot_read(file, errno);
     check_kind(file, status, named, pipes);
     const bool regular = S_ISREG(status.st_mode);

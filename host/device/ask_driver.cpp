@@ -1,5 +1,6 @@
 #include "device/ask_driver.h"
 
+#include "base/environment.h"
 #include "base/hash.h"
 #include "base/json.h"
 #include "base/log.h"
@@ -165,12 +166,6 @@ std::string absolute_library(const std::string &library) {
     return library.find('/') == std::string::npos ? library : fs::absolute(library).lexically_normal().string();
 }
 
-// A variable of the environment; empty if it is not set.
-std::string variable(const char *name) {
-    const char *const text = std::getenv(name);
-    return text ? text : "";
-}
-
 } // namespace
 
 void set_probe_binary(const fs::path &binary) { probe_binary = binary; }
@@ -203,7 +198,7 @@ std::string loader_path() { return library_path("libOpenCL.so.1"); }
 std::vector<DeviceInfo> probe_drivers(const std::vector<Driver> &drivers, double time_limit, bool ask_all) {
     using Clock = ChildProcess::Clock;
     const DriverScope scope; // drivers start in its working directory
-    const PoclCacheVariable cache;
+    const ScopedVariable cache(pocl_cache_variable, WorkFolder::own().driver_files());
     const auto deadline =
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(time_limit));
     std::vector<Probe> probes;

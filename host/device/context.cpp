@@ -1,5 +1,6 @@
 #include "device/context.h"
 
+#include "base/environment.h"
 #include "device/ask_driver.h"
 #include "device/load_driver.h"
 #include "device/work_folder.h"
@@ -148,7 +149,7 @@ cl::Device part_of(cl::Device &device, unsigned units) {
 Device open_device(const DeviceInfo &info) {
     return with_device(info, [&] {
         const DriverScope scope;
-        const PoclCacheVariable cache;
+        const ScopedVariable cache(pocl_cache_variable, WorkFolder::own().driver_files());
         std::optional<cl::Device> found;
         for_each_device(info.library, [&](const DeviceInfo &seen, const cl::Device &device) {
             if (seen.platform_place == info.platform_place && seen.device_place == info.device_place &&

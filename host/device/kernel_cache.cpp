@@ -1,5 +1,7 @@
 #include "device/kernel_cache.h"
 
+#include "base/descriptor.h"
+#include "base/environment.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/log.h"
@@ -11,7 +13,6 @@
 #include <cerrno>
 #include <charconv>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <string_view>
 #include <utility>
@@ -29,26 +30,6 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view file_extension = ".kernels", magic = "opal kernels 1\n", temporary_prefix = ".opal-tmp-";
 constexpr const char *last_access = "last_accessed"; // PoCL writes such a file at each build of the program beside it
-
-std::string variable(const char *name) {
-    const char *const text = std::getenv(name);
-    return text ? text : "";
-}
-
-class Descriptor {
-public:
-    explicit Descriptor(int number) : number_(number) {}
-    ~Descriptor() {
-        if (number_ >= 0)
-            close(number_);
-    }
-    Descriptor(const Descriptor &) = delete;
-    Descriptor &operator=(const Descriptor &) = delete;
-    operator int() const { return number_; }
-
-private:
-    int number_;
-};
 
 // Makes the folder, with those above it, and checks whose it is.
 CacheFolder checked_folder(const fs::path &folder) {
@@ -100,23 +81,13 @@ template <class Visit> void visit_files(const fs::path &folder, Visit visit) {
 
 bool is_temporary(const fs::path &file) { return file.filename().string().starts_with(temporary_prefix); }
 
-bool write_all(int descriptor, std::string_view bytes) {
-    while (!bytes.empty()) {
-        const ssize_t count = write(descriptor, bytes.data(), bytes.size());
-        if (count < 0 && errno != EINTR)
-            return false;
-        bytes.remove_prefix(count > 0 ? size_t(count) : 0);
-    }
-    return true;
-}
-
 std::string read_all(int descriptor, size_t size) {
     std::string bytes(size, '\0');
     for (size_t done = 0; done < size;) {
-        const ssize_t count = read(descriptor, bytes.data() + done, size - done);
-        if (count == 0 || (count < 0 && errno != EINTR))
+        const ssize_t count = again([&] { return read(descriptor, bytes.data() + done, size - done); });
+        if (count <= 0)
             throw Error(count == 0 ? "it is cut short" : std::strerror(errno));
-        done += count > 0 ? size_t(count) : 0;
+        done += size_t(count);
     }
     return bytes;
 }
@@ -249,7 +220,7 @@ void CachedProgram::unpack(const std::string &bytes) {
         const Descriptor made(open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, S_IRWXU));
         if (made < 0 && errno != EEXIST) // this process has made it before
             return;
-        if (made >= 0 && !write_all(made, left.substr(0, size))) {
+        if (made >= 0 && write_all(made, left.substr(0, size))) {
             unlink(file.c_str());
             return;
         }
@@ -299,7 +270,7 @@ void CachedProgram::store() {
     const int made = mkostemp(temporary.data(), O_CLOEXEC); // exclusive, mode 600
     if (made < 0)
         return warn_not_kept(file, errno);
-    int error = write_all(made, std::string(magic) + xxh128(contents) + '\n' + contents) ? 0 : errno;
+    int error = write_all(made, std::string(magic) + xxh128(contents) + '\n' + contents);
     if (close(made) != 0 && !error)
         error = errno;
     if (!error && rename(temporary.c_str(), file.c_str()) != 0)

@@ -1,9 +1,9 @@
 #include "device/load_driver.h"
 
+#include "base/environment.h"
+
 #include <algorithm>
-#include <cstdlib>
 #include <optional>
-#include <utility>
 
 #include <dlfcn.h>
 #include <link.h>
@@ -49,37 +49,19 @@ void describe(const cl::Device &device, DeviceInfo &info) {
 }
 
 // Makes the OpenCL loader load this library and no other, by its environment, which it reads when it is first called.
-// The variables are restored afterwards, so that child processes do not inherit them. Three loaders are in use:
+// Three loaders are in use:
 // - Khronos's takes libraries from OCL_ICD_FILENAMES, and from OCL_ICD_VENDORS a folder of .icd files (icd.c,
 // icd_linux.c);
 // - NVIDIA's, made from it, wants a slash at the end of that folder;
 // - ocl-icd does not know OCL_ICD_FILENAMES, but an OCL_ICD_VENDORS that is no folder and no .icd file is the library
 // itself (libOpenCL(7)).
 // The library's name in both variables is understood by each, and needs no folder to be written.
-class LoaderEnvironment {
-public:
-    explicit LoaderEnvironment(const std::string &library) {
-        if (library.empty())
-            return;
-        for (const char *name : {"OCL_ICD_VENDORS", "OCL_ICD_FILENAMES"}) {
-            const char *const value = std::getenv(name);
-            before_.emplace_back(name, value ? std::optional<std::string>(value) : std::nullopt);
-            setenv(name, library.c_str(), 1);
-        }
-    }
-    ~LoaderEnvironment() {
-        for (const auto &[name, value] : before_)
-            value ? setenv(name, value->c_str(), 1) : unsetenv(name);
-    }
-    LoaderEnvironment(const LoaderEnvironment &) = delete;
-    LoaderEnvironment &operator=(const LoaderEnvironment &) = delete;
-
-private:
-    std::vector<std::pair<const char *, std::optional<std::string>>> before_;
-};
-
 std::vector<cl::Platform> platforms_of(const std::string &library) {
-    const LoaderEnvironment environment(library);
+    std::optional<ScopedVariable> vendors, file_names;
+    if (!library.empty()) {
+        vendors.emplace("OCL_ICD_VENDORS", library);
+        file_names.emplace("OCL_ICD_FILENAMES", library);
+    }
     std::vector<cl::Platform> platforms;
     try {
         cl::Platform::get(&platforms);

@@ -196,15 +196,4 @@ DriverScope::~DriverScope() {
     close(directory_before);
 }
 
-PoclCacheVariable::PoclCacheVariable() {
-    const char *const value = std::getenv("POCL_CACHE_DIR");
-    was_set_ = value != nullptr;
-    before_ = value ? value : "";
-    setenv("POCL_CACHE_DIR", WorkFolder::own().driver_files().c_str(), 1);
-}
-
-PoclCacheVariable::~PoclCacheVariable() {
-    was_set_ ? setenv("POCL_CACHE_DIR", before_.c_str(), 1) : unsetenv("POCL_CACHE_DIR");
-}
-
 } // namespace opal

@@ -15,7 +15,7 @@ public:
     WorkFolder(const WorkFolder &) = delete;
     WorkFolder &operator=(const WorkFolder &) = delete;
 
-    std::filesystem::path driver_files() const { return path_ / "driver"; }
+    std::filesystem::path driver_files() const { return path_ / "driver"; } // PoCL's, by the variable below
     std::filesystem::path empty() const { return path_ / "empty"; }
 
     // The file of the cache whose kernels are being launched for the first time. A process that finds a mark of one
@@ -32,6 +32,9 @@ private:
     pid_t owner_;
 };
 
+// PoCL asks it when its devices are listed first.
+inline constexpr const char *pocl_cache_variable = "POCL_CACHE_DIR";
+
 // While one lives, drivers may look up names in the working directory and print: the directory is the empty one above,
 // as the user's may be a folder of a stranger, and stdout is stderr, as stdout is for results. Scopes may be nested, in
 // the main thread alone. Relative names of files must not be used meanwhile.
@@ -41,20 +44,6 @@ public:
     ~DriverScope();
     DriverScope(const DriverScope &) = delete;
     DriverScope &operator=(const DriverScope &) = delete;
-};
-
-// While one lives, POCL_CACHE_DIR is the work folder's: PoCL asks it when its devices are listed first. Afterwards it
-// is as it was, for child processes.
-class PoclCacheVariable {
-public:
-    PoclCacheVariable();
-    ~PoclCacheVariable();
-    PoclCacheVariable(const PoclCacheVariable &) = delete;
-    PoclCacheVariable &operator=(const PoclCacheVariable &) = delete;
-
-private:
-    bool was_set_;
-    std::string before_;
 };
 
 } // namespace opal

@@ -1,5 +1,6 @@
 #include "image/image.h"
 
+#include "base/descriptor.h"
 #include "base/error.h"
 #include "base/file_use.h"
 #include "base/log.h"
@@ -43,28 +44,6 @@ bool is_special(const struct stat &status) { return !S_ISREG(status.st_mode); }
     throw Error(fmt::format("{}: cannot be written: {}", name, std::strerror(error)));
 }
 
-// A call that is made again if a signal ended it.
-template <class Call> auto again(Call call) {
-    auto result = call();
-    while (result < 0 && errno == EINTR)
-        result = call();
-    return result;
-}
-
-// Closes at the latest when it goes out of scope.
-class Descriptor {
-public:
-    explicit Descriptor(int number) : number_(number) {}
-    Descriptor(Descriptor &&other) noexcept : number_(std::exchange(other.number_, -1)) {}
-    ~Descriptor() { close(); }
-    operator int() const { return number_; }
-    // Returns errno, or 0. Linux has closed the file also where a signal came between.
-    int close() { return number_ >= 0 && ::close(std::exchange(number_, -1)) != 0 && errno != EINTR ? errno : 0; }
-
-private:
-    int number_;
-};
-
 // Waits until a reader takes more. False: a signal has come, and the reader takes nothing.
 bool wait_for_room(int descriptor) {
     pollfd poll{descriptor, POLLOUT, 0};
@@ -79,7 +58,7 @@ bool wait_for_room(int descriptor) {
 }
 
 // Returns errno, or 0. To what may have a slow reader, pieces are written for which poll promises room.
-int write_all(int descriptor, std::string_view bytes) {
+int write_and_sync(int descriptor, std::string_view bytes) {
     struct stat status {};
     const bool has_reader = fstat(descriptor, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISBLK(status.st_mode);
     const size_t most = has_reader ? PIPE_BUF : size_t(std::numeric_limits<ssize_t>::max());
@@ -96,7 +75,7 @@ int write_all(int descriptor, std::string_view bytes) {
 }
 
 int write_and_close(Descriptor descriptor, std::string_view bytes) {
-    const int error = write_all(descriptor, bytes);
+    const int error = write_and_sync(descriptor, bytes);
     const int at_close = descriptor.close();
     return error ? error : at_close;
 }
