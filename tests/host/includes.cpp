@@ -48,6 +48,7 @@ const std::vector<Room> rooms = {
     {"scene", {"base", "cl"}},
     {"read", {"base", "cl", "scene"}},
     {"read/nori", {"base", "cl", "scene", "read"}},
+    {"read/mitsuba", {"base", "cl", "scene", "read"}},
     {"strategies", {"base", "cl", "scene"}},
     {"bvh", {"base", "cl"}},
     {"flatten", {"base", "cl", "scene", "bvh"}},

@@ -4,7 +4,7 @@
 #include "base/color.h"
 #include "base/math.h"
 #include "base/table.h"
-#include "read/nori/context.h"
+#include "read/context.h"
 
 #include <optional>
 #include <unordered_map>

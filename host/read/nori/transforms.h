@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/math.h"
-#include "read/nori/context.h"
+#include "read/context.h"
 
 namespace opal {
 

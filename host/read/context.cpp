@@ -1,4 +1,4 @@
-#include "read/nori/context.h"
+#include "read/context.h"
 
 #include "base/log.h"
 #include "read/nori/names.h"
