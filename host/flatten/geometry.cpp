@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 #include <span>
 
@@ -64,7 +65,24 @@ private:
         add_triangle(first, {1, 3, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE});
     }
 
-    void add_primitives(const Sphere &) {}
+    void add_primitives(const Sphere &sphere) {
+        const uint id = SHAPE_sphere << OPAL_SHAPE_SHIFT | uint(scene_.sphere_blocks.size());
+        const Point3f center = flattening_(sphere.center);
+        SphereBlock block{};
+        block.radius[0] = float(sphere.radius * flattening_.scale);
+        block.inward[0] = sphere.inward;
+        block.mesh[0] = mesh_;
+        block.id[0] = id;
+        Box box;
+        for (int axis = 0; axis < 3; axis++) {
+            block.center[axis][0] = center[axis];
+            // The next float holds the end of the box, which is rounded.
+            box.lo[axis] = std::nextafter(center[axis] - block.radius[0], -Box::infinity);
+            box.hi[axis] = std::nextafter(center[axis] + block.radius[0], Box::infinity);
+        }
+        scene_.sphere_blocks.push_back(block);
+        soup.others.push_back({id, box, mesh_});
+    }
 
     // Returns the index of the first one.
     uint add_vertices(std::span<const Vec3> positions) {
