@@ -101,6 +101,10 @@ class Scene:
         """The parallelogram with corner a and its neighbours b and d; the front sees a, b, d counter-clockwise."""
         self.parallelogram(a, sub(b, a), sub(d, a), material, radiance)
 
+    def sphere(self, center, radius, material, radiance=None):
+        self._add('<mesh type="sphere">', [f'<point name="center" value="{triple(center)}"/>', real("radius", radius)],
+                  material, (), radiance)
+
     def _add(self, tag, shape, material, transform, radiance):
         parts = [tag, *shape]
         if transform:

@@ -26,6 +26,8 @@ bool in_unit_square(const Parallelogram &p) {
            in_unit_square(p.origin + p.u + p.v);
 }
 
+bool in_unit_square(const Sphere &) { return true; } // its directions are counted
+
 } // namespace
 
 std::vector<Material> bsdf_cases(const std::filesystem::path &folder) {
