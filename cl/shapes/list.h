@@ -36,13 +36,13 @@ typedef struct {
 } Triangle;
 OPAL_SIZE_CHECK(Triangle, 16);
 
-// Eight spheres. Unused places come last. They have radius 0 and id OPAL_NONE.
+// Eight spheres. Unused places come last. They repeat the first sphere and have id OPAL_NONE.
 typedef struct {
     float center[3][OPAL_WIDTH];
     float radius[OPAL_WIDTH];
     uint inward[OPAL_WIDTH]; // 1: the normals point to the centre
     uint mesh[OPAL_WIDTH];
-    uint id[OPAL_WIDTH];     // counts from the last triangle's
+    uint id[OPAL_WIDTH];     // SHAPE_sphere << OPAL_SHAPE_SHIFT | index
 } SphereBlock;
 OPAL_SIZE_CHECK(SphereBlock, 224);
 
