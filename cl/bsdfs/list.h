@@ -4,8 +4,10 @@
 
 #include "bsdfs/dielectric.h"
 #include "bsdfs/diffuse.h"
+#include "bsdfs/mask.h"
 #include "bsdfs/microfacet.h"
 #include "bsdfs/mirror.h"
+#include "bsdfs/null.h"
 #include "bsdfs/phong.h"
 #include "bsdfs/twosided.h"
 #include "shared/glue.h"
@@ -24,10 +26,13 @@ enum {
     BSDF(mirror, OPAL_DISCRETE) \
     BSDF(dielectric, OPAL_DISCRETE | OPAL_TRANSMITS) \
     BSDF(microfacet, OPAL_SMOOTH) \
-    BSDF(phong, OPAL_SMOOTH)
+    BSDF(phong, OPAL_SMOOTH) \
+    BSDF(null, OPAL_DISCRETE | OPAL_TRANSMITS)
 
 // BSDFs that only lead to others, which are their parameters of type BSDF: BSDF(name, traits that these must not have)
-#define OPAL_NESTING_BSDFS(BSDF) BSDF(twosided, OPAL_TRANSMITS)
+#define OPAL_NESTING_BSDFS(BSDF) \
+    BSDF(twosided, OPAL_TRANSMITS) \
+    BSDF(mask, 0)
 
 #define OPAL_ALL_BSDFS(BSDF) OPAL_BSDFS(BSDF) OPAL_NESTING_BSDFS(BSDF)
 

@@ -6,7 +6,7 @@
 
 static BsdfOpening twosided_open(twosided_bsdf b, BsdfOpening o) {
     mask behind = o.wi.z < 0;
-    o.at = b.base;
+    o.at = uints_pick(behind, b.back, b.base);
     o.wi.z = fabs(o.wi.z);
     o.frame.n = v3_pick(behind, v3_neg(o.frame.n), o.frame.n);
     return o;

@@ -14,12 +14,24 @@ enum {
 
 // CAMERA(name, record, traits)
 #define OPAL_CAMERAS(CAMERA) \
-    CAMERA(perspective, PerspectiveCamera, OPAL_ONE_ORIGIN)
+    CAMERA(perspective, PerspectiveCamera, OPAL_ONE_ORIGIN) \
+    CAMERA(thinlens, ThinLensCamera, OPAL_DRAWS_LENS) \
+    CAMERA(orthographic, OrthographicCamera, 0)
 
 // The parameters of a kind, rows of shared/parameters.h. All are numbers in world units; the host reads them, and fills
 // the kind's record below.
 #define OPAL_CAMERA_perspective(PARAMETER) \
-    PARAMETER(NUMBER, fov, "fov", 30, INSIDE(0, 180), "full horizontal angle, degrees")
+    PARAMETER(NUMBER, fov, "fov", 30, INSIDE(0, 180), "full horizontal angle, degrees") \
+    PARAMETER(NUMBER, principal_point_x, "principalPointX", 0, ANY, \
+              "how far right of the image's middle the axis meets it, in widths") \
+    PARAMETER(NUMBER, principal_point_y, "principalPointY", 0, ANY, \
+              "how far below the image's middle the axis meets it, in heights")
+#define OPAL_CAMERA_thinlens(PARAMETER) \
+    PARAMETER(NUMBER, fov, "fov", 30, INSIDE(0, 180), "full horizontal angle, degrees") \
+    PARAMETER(NUMBER, aperture_radius, "lensRadius", 0, AT_LEAST(0), "radius of the lens") \
+    PARAMETER(NUMBER, focus_distance, "focalDistance", 10, ABOVE(0), \
+              "depth of the plane that is seen sharply")
+#define OPAL_CAMERA_orthographic(PARAMETER)
 
 #define OPAL_CAMERA_ENUM(name, record, traits) CAMERA_##name,
 enum { OPAL_CAMERAS(OPAL_CAMERA_ENUM) CAMERA_COUNT };
@@ -30,7 +42,17 @@ namespace opal {
 
 typedef struct {
     float tan_half_x, tan_half_y; // film half extents at distance 1
+    float shift_x, shift_y;       // of the film at distance 1, to the left and up
 } PerspectiveCamera;
+
+typedef struct {
+    float tan_half_x, tan_half_y; // film half extents at distance 1
+    float aperture_radius, focus_distance;
+} ThinLensCamera;
+
+typedef struct {
+    float half_x, half_y; // film half extents, in lengths of `left` and `up`
+} OrthographicCamera;
 
 // The camera. Positions and distances are in the flattened scene's units (FlatScene::center, FlatScene::scale).
 typedef struct {

@@ -18,12 +18,15 @@ enum {
 // EMITTER(name, traits). Emitters of meshes: the shape and its <emitter type="area"> describe them.
 #define OPAL_MESH_EMITTERS(EMITTER) \
     EMITTER(mesh, OPAL_SURFACE)          /* a triangle mesh that emits */ \
-    EMITTER(parallelogram, OPAL_SURFACE) /* a parallelogram that emits, sampled as one piece */
+    EMITTER(parallelogram, OPAL_SURFACE) /* a parallelogram that emits, sampled as one piece */ \
+    EMITTER(sphere, OPAL_SURFACE)        /* a sphere that emits, sampled by the cone that it fills */
 
 // Emitters of scenes: NAME is also the XML type.
 #define OPAL_SCENE_EMITTERS(EMITTER) \
     EMITTER(point, OPAL_DELTA)      /* a point that emits alike in all directions */ \
-    EMITTER(constant, OPAL_INFINITE) /* an environment of one radiance */
+    EMITTER(constant, OPAL_INFINITE) /* an environment of one radiance */ \
+    EMITTER(spot, OPAL_DELTA)        /* a point that emits into a cone */ \
+    EMITTER(directional, OPAL_DELTA | OPAL_INFINITE) /* parallel light, as that of the sun */
 
 #define OPAL_EMITTERS(EMITTER) OPAL_MESH_EMITTERS(EMITTER) OPAL_SCENE_EMITTERS(EMITTER)
 
@@ -34,6 +37,21 @@ enum {
 
 #define OPAL_EMITTER_constant(PARAMETER) \
     PARAMETER(COLOR, radiance, "radiance", 1, AT_LEAST(0), "radiance, W / (m^2 sr)")
+
+#define OPAL_EMITTER_spot(PARAMETER) \
+    PARAMETER(POINT, position, "position", REQUIRED, ANY, "position") \
+    PARAMETER(VECTOR, direction, "direction", REQUIRED, ANY, "where its axis points to") \
+    PARAMETER(COLOR, intensity, "intensity", 1, AT_LEAST(0), "intensity within the beam, W / sr") \
+    PARAMETER(NUMBER, cutoff_angle, "cutoffAngle", 20, BETWEEN(0, 180), \
+              "angle from the axis at which the light ends, degrees") \
+    PARAMETER(NUMBER, beam_width, "beamWidth", 15, BETWEEN(0, 180), \
+              "angle from the axis up to which the intensity is full, degrees") \
+    PARAMETER(FLAG, smooth, "smooth", false, ANY, \
+              "fall as the fourth power of the cosine's share, as pbrt has it, else in proportion to the angle")
+
+#define OPAL_EMITTER_directional(PARAMETER) \
+    PARAMETER(VECTOR, direction, "direction", REQUIRED, ANY, "where the light goes to") \
+    PARAMETER(COLOR, irradiance, "irradiance", 1, AT_LEAST(0), "irradiance across the direction, W / m^2")
 
 #define OPAL_EMITTER_ENUM(name, traits) EMITTER_##name,
 enum { OPAL_EMITTERS(OPAL_EMITTER_ENUM) EMITTER_COUNT };
@@ -68,6 +86,28 @@ typedef struct {
 typedef struct {
     float color[3];
 } emitter_constant_record;
+
+typedef struct {
+    float color[3];
+    float center[3];
+    float radius;
+    uint inward;          // 1: it emits inside
+} emitter_sphere_record;
+
+typedef struct {
+    float color[3];
+    float position[3];
+    float direction[3];          // unit
+    float cutoff_angle;          // radians
+    float inverse_transition;    // 1 / (cutoff_angle - beam width)
+    float cos_cutoff, cos_beam;
+    uint smooth;                 // 1: the falloff of pbrt
+} emitter_spot_record;
+
+typedef struct {
+    float color[3];
+    float direction[3];   // unit, where the light goes to
+} emitter_directional_record;
 
 // One emitter. Lanes read the record of a kind from emitters of another kind too, and drop what they read: a member
 // that is an index into a table must stand before `u`. The members of `u` have a prefix, as "constant" is a keyword.

@@ -28,6 +28,10 @@
     OPAL_FEATURE_ROW(two_sided_lights, "two_sided_lights") \
     /* some mesh interpolates vertex normals */ \
     OPAL_FEATURE_ROW(shading_normals, "shading_normals") \
+    /* rays of the camera pass emitters */ \
+    OPAL_FEATURE_ROW(hidden_emitters, "hidden_emitters") \
+    /* direct_lighting takes several samples of a kind */ \
+    OPAL_FEATURE_ROW(sample_counts, "sample_counts") \
     /* the face list, tested by all lanes at once: a tiny scene, or the largest faces */ \
     OPAL_FEATURE_ROW(face_list, "listed") \
     /* a tree of the other triangles, walked lane by lane */ \

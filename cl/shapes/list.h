@@ -5,7 +5,8 @@
 #include "shared/types.h"
 
 #define OPAL_SHAPES(SHAPE) \
-    SHAPE(triangle, TriangleBlock)
+    SHAPE(triangle, TriangleBlock) \
+    SHAPE(sphere, SphereBlock)
 
 #define OPAL_SHAPE_ENUM(name, Block) SHAPE_##name,
 enum { OPAL_SHAPES(OPAL_SHAPE_ENUM) SHAPE_COUNT };
@@ -13,7 +14,8 @@ enum { OPAL_SHAPES(OPAL_SHAPE_ENUM) SHAPE_COUNT };
 // The shapes' tables, as rows of OPAL_TABLES (scene_tables.h): NAME_blocks of each shape, and what else it needs.
 #define OPAL_SHAPE_TABLES(TABLE) \
     TABLE(TriangleBlock, triangle_blocks, "triangle blocks") \
-    TABLE(Triangle, triangles, "triangles")
+    TABLE(Triangle, triangles, "triangles") \
+    TABLE(SphereBlock, sphere_blocks, "sphere blocks")
 
 #ifdef __cplusplus
 namespace opal {
@@ -33,6 +35,16 @@ typedef struct {
     uint mesh;
 } Triangle;
 OPAL_SIZE_CHECK(Triangle, 16);
+
+// Eight spheres. Unused places come last. They have radius 0 and id OPAL_NONE.
+typedef struct {
+    float center[3][OPAL_WIDTH];
+    float radius[OPAL_WIDTH];
+    uint inward[OPAL_WIDTH]; // 1: the normals point to the centre
+    uint mesh[OPAL_WIDTH];
+    uint id[OPAL_WIDTH];     // counts from the last triangle's
+} SphereBlock;
+OPAL_SIZE_CHECK(SphereBlock, 224);
 
 #ifdef __cplusplus
 static_assert(SHAPE_COUNT <= OPAL_SHAPE_BITS); // one is left, so that no leaf is OPAL_NONE

@@ -53,7 +53,7 @@ typedef struct {
 } MeshRecord;
 OPAL_SIZE_CHECK(MeshRecord, 8);
 
-#define OPAL_FILTERS(FILTER) FILTER(box) FILTER(tent) FILTER(gaussian) FILTER(mitchell)
+#define OPAL_FILTERS(FILTER) FILTER(box) FILTER(tent) FILTER(gaussian) FILTER(mitchell) FILTER(lanczos)
 #define OPAL_FILTER_ENUM(name) FILTER_##name,
 enum { OPAL_FILTERS(OPAL_FILTER_ENUM) FILTER_COUNT };
 
@@ -77,6 +77,8 @@ typedef struct {
     uint max_depth;                 // most segments of a path (1: emitters, 2: direct light); OPAL_NONE: no limit
     uint rr_depth;                  // roulette starts when a path has this many segments
     float rr_prob;                  // --rr fixed: probability to survive, a multiple of 2^-24 as random numbers are
+    float rr_max;                   // --rr throughput: greatest probability to survive, a multiple of 2^-24
+    uint emitter_samples, bsdf_samples; // of direct_lighting: how many of each kind
     uint normals_signed;            // integrator normals: n/2 + 1/2 (1) or |n| (0)
     float visibility_length;        // integrator av: how far it looks
     float light_position[3];        // integrator simple
@@ -87,7 +89,7 @@ typedef struct {
     float filter_b, filter_c;       // mitchell
     int choices[AXIS_COUNT];        // CHOICE_* of each axis; read by the general kernel only
 } Settings;
-OPAL_SIZE_CHECK(Settings, 124 + 4 * AXIS_COUNT);
+OPAL_SIZE_CHECK(Settings, 136 + 4 * AXIS_COUNT);
 
 #ifdef __cplusplus
 }

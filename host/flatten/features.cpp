@@ -122,6 +122,18 @@ public:
                        scene.triangles.size(), "triangle", "triangles");
     }
 
+    Decision hidden_emitters() const {
+        return {description.hides_emitters && integrator.has(OPAL_ASKS_LIGHTS),
+                description.hides_emitters ? "the integrator hides emitters" : "rays of the camera see emitters"};
+    }
+
+    Decision sample_counts() const {
+        const Strategy &strategy = description.strategy;
+        return {integrator.has(OPAL_ONE_SAMPLE_MIS) && (strategy.emitter_samples > 1 || strategy.bsdf_samples > 1),
+                fmt::format("{} and {}", plural(strategy.emitter_samples, "emitter sample", "emitter samples"),
+                            plural(strategy.bsdf_samples, "BSDF sample", "BSDF samples"))};
+    }
+
     Decision face_list() const {
         if (lanes < FACE_LIST_LANES)
             return {false, fmt::format("pays from {} lanes on", FACE_LIST_LANES)};
@@ -223,6 +235,26 @@ bool general_has(unsigned feature, int lanes) {
     return feature != FEATURE_large_tree;
 }
 
+// Features of a second program for all scenes, which serves scenes that have one of these. Scenes of Nori's own kinds
+// have none, and would be slower with the second.
+bool is_second_general(unsigned feature) {
+    switch (feature) {
+    case FEATURE_bsdf_mask:
+    case FEATURE_bsdf_null:
+    case FEATURE_emitter_sphere:
+    case FEATURE_emitter_spot:
+    case FEATURE_emitter_directional:
+    case FEATURE_shape_sphere:
+    case FEATURE_camera_thinlens:
+    case FEATURE_camera_orthographic:
+    case FEATURE_hidden_emitters:
+    case FEATURE_sample_counts:
+        return true;
+    default:
+        return false;
+    }
+}
+
 } // namespace
 
 const char *feature_name(unsigned feature) {
@@ -244,10 +276,14 @@ Features find_features(const SceneDescription &description, const FlatScene &sce
 
     Features features;
     const bool specialise = !description.strategy.is_general();
+    bool second_general = false;
     for (unsigned i = 0; i < FEATURE_COUNT; i++)
-        features.list[i] = specialise || i == FEATURE_endless_paths // a general kernel of its own
-                               ? Feature{decisions[i].on, decisions[i].reason}
-                               : Feature{general_has(i, lanes), "the general kernel"};
+        second_general = second_general || (is_second_general(i) && decisions[i].on);
+    for (unsigned i = 0; i < FEATURE_COUNT; i++)
+        features.list[i] =
+            specialise || i == FEATURE_endless_paths // a general kernel of its own
+                ? Feature{decisions[i].on, decisions[i].reason}
+                : Feature{general_has(i, lanes) && (second_general || !is_second_general(i)), "the general kernel"};
     for (int axis = 0; axis < AXIS_COUNT; axis++) {
         features.axes[axis] = specialise ? description.strategy[axis] : -1;
         features.axis_reasons[axis] = specialise ? "chosen" : "the general kernel: decided at run time";

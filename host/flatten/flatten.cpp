@@ -66,6 +66,9 @@ void fill_strategy(const SceneDescription &description, const Flattening &flatte
     settings.max_depth = description.strategy.max_depth;
     settings.rr_depth = description.strategy.rr_depth;
     settings.rr_prob = float(drawn_probability(description.strategy.rr_prob));
+    settings.rr_max = float(drawn_probability(description.strategy.rr_max));
+    settings.emitter_samples = description.strategy.emitter_samples;
+    settings.bsdf_samples = description.strategy.bsdf_samples;
     settings.normals_signed = description.normals_signed;
     settings.visibility_length = float(description.visibility_length * flattening.scale);
     store((description.simple_light.position - flattening.center) * flattening.scale, settings.light_position);

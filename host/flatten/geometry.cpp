@@ -64,6 +64,8 @@ private:
         add_triangle(first, {1, 3, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE});
     }
 
+    void add_primitives(const Sphere &) {}
+
     // Returns the index of the first one.
     uint add_vertices(std::span<const Vec3> positions) {
         const uint first = uint(soup.vertices.size());

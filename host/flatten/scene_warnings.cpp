@@ -124,6 +124,8 @@ public:
     }
 
 private:
+    static bool faces_away(const Sphere &, size_t) { return false; } // its normals point everywhere
+
     static constexpr size_t most_triangles = 256; // a mesh light is compared with itself, in quadratic time
     const SceneDescription &scene_;
     double rounding_ = 0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace opal {
 
@@ -20,6 +21,10 @@ template <class Real> Real weight_of(const Filter &filter, Real distance) {
     case FILTER_gaussian: {
         const Real stddev = Real(float(filter.stddev)), falloff = Real(-0.5) / (stddev * stddev);
         return std::max(std::exp(falloff * a * a) - std::exp(falloff * radius * radius), Real(0));
+    }
+    case FILTER_lanczos: { // sinc(a) sinc(a / radius)
+        const Real x = Real(std::numbers::pi) * a;
+        return a == 0 ? Real(1) : std::sin(x) / x * (std::sin(x / radius) / (x / radius));
     }
     case FILTER_mitchell: {
         const Real t = 2 * a / radius, t2 = t * t, b = Real(float(filter.b)), c = Real(float(filter.c));

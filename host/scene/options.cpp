@@ -31,12 +31,16 @@ void set_max_depth(Strategy &strategy, const std::string &value) {
 
 void set_rr_depth(Strategy &strategy, const std::string &value) { strategy.rr_depth = parse_count(value, "rr-depth"); }
 
-void set_rr_prob(Strategy &strategy, const std::string &value) {
-    double probability = parse_number(value);
+double parse_survival(const std::string &value, const char *what) {
+    const double probability = parse_number(value);
     if (!(probability > 0 && probability <= 1))
-        throw Error("rr-prob must be a probability to survive, above 0 and at most 1, not " + value);
-    strategy.rr_prob = probability;
+        throw Error(fmt::format("{} must be a probability to survive, above 0 and at most 1, not {}", what, value));
+    return probability;
 }
+
+void set_rr_prob(Strategy &strategy, const std::string &value) { strategy.rr_prob = parse_survival(value, "rr-prob"); }
+
+void set_rr_max(Strategy &strategy, const std::string &value) { strategy.rr_max = parse_survival(value, "rr-max"); }
 
 void set_math(Strategy &strategy, const std::string &value) {
     const MathModeRow &row = find_row(math_modes(), "math", value);
@@ -81,6 +85,17 @@ const std::vector<StrategyOption> numbers = {
      set_rr_depth, [](const Strategy &s) { return std::to_string(s.rr_depth); }},
     {"rr-prob", "rr_prob", "float", "P", "--rr fixed: probability to survive, above 0 to 1 [the scene's, else 0.95]",
      set_rr_prob, [](const Strategy &s) { return fmt::format("{}", s.rr_prob); }},
+    {"rr-max", "rr_max", "float", "P",
+     "--rr throughput, throughput-eta: greatest probability to survive, above 0 to 1 [the scene's, else 0.9999]",
+     set_rr_max, [](const Strategy &s) { return fmt::format("{}", s.rr_max); }},
+    {"emitter-samples", "emitter_samples", "integer", "N",
+     "direct_lighting: light samples of the first surface [the scene's, else 1]",
+     [](Strategy &s, const std::string &value) { s.emitter_samples = parse_count(value, "emitter-samples"); },
+     [](const Strategy &s) { return std::to_string(s.emitter_samples); }},
+    {"bsdf-samples", "bsdf_samples", "integer", "N",
+     "direct_lighting: BSDF samples of the first surface [the scene's, else 1]",
+     [](Strategy &s, const std::string &value) { s.bsdf_samples = parse_count(value, "bsdf-samples"); },
+     [](const Strategy &s) { return std::to_string(s.bsdf_samples); }},
     {"math", "math", "string", "MODE",
      "precise: single precision; fast: the same with relaxed math; double: double precision, where the device has it "
      "[precise]",

@@ -105,6 +105,7 @@ struct SceneDescription {
     Dialect dialect = Dialect::upstream;
     std::map<std::string, std::string> definitions; // the values that stand for $name in the file
     Strategy strategy;
+    bool hides_emitters = false; // rays of the camera pass emitters, and see no environment
     bool normals_signed = false;
     SimpleLight simple_light;
     double visibility_length = 1; // integrator av: how far it looks

@@ -116,4 +116,16 @@ Parallelogram Parallelogram::moved(const Transform &by) const { return {by.point
 
 std::string Parallelogram::text() const { return "parallelogram"; }
 
+Extent Sphere::extent() const {
+    const Vec3 half{radius, radius, radius};
+    return {center - half, center + half};
+}
+
+Sphere Sphere::moved(const Transform &by) const {
+    const double determinant = by.determinant();
+    return {by.point(center), radius * std::cbrt(std::abs(determinant)), inward != (determinant < 0)};
+}
+
+std::string Sphere::text() const { return "sphere"; }
+
 } // namespace opal

@@ -52,6 +52,16 @@ struct Parallelogram {
     std::string text() const;
 };
 
-using Shape = std::variant<TriangleMesh, Parallelogram>;
+struct Sphere {
+    Vec3 center;
+    double radius = 1;
+    bool inward = false; // whether its normals point to the centre: it is seen and emits inside
+
+    Extent extent() const;
+    Sphere moved(const Transform &by) const; // a similarity, which may mirror: that turns the normals
+    std::string text() const;
+};
+
+using Shape = std::variant<TriangleMesh, Parallelogram, Sphere>;
 
 } // namespace opal

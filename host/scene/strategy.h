@@ -55,6 +55,9 @@ constexpr unsigned no_limit = 0xffffffffu;
 struct Strategy {
     std::array<int, AXIS_COUNT> choices{}; // CHOICE_* of each AXIS_*
     double rr_prob = 0.95;                 // --rr fixed
+    double rr_max = 0.9999;                // --rr throughput: greatest probability to survive
+    unsigned emitter_samples = 1;          // of direct_lighting, where light is sampled
+    unsigned bsdf_samples = 1;             // of direct_lighting, where the BSDF is sampled
     unsigned rr_depth = 3;                 // roulette from this many segments on
     unsigned max_depth = no_limit;         // segments of the longest path
     MathMode math = MathMode::precise;

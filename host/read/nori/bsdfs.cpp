@@ -62,7 +62,10 @@ void add_children(Properties &properties, const BsdfType &type, Bsdf &bsdf) {
             if (child.traits() & type.refused & OPAL_TRANSMITS)
                 node.fail(fmt::format("a {} cannot hold a BSDF that light passes through", type.name));
         });
-    if (std::ssize(nodes) != wanted)
+    const bool same_back = bsdf.kind() == BSDF_twosided && nodes.size() == 1;
+    if (same_back && !bsdf.children.empty())
+        bsdf.children.push_back(bsdf.children.front());
+    if (std::ssize(nodes) != wanted && !same_back)
         properties.mistake(fmt::format("a {} has {} <bsdf> within it, not {}", type.name, wanted, nodes.size()));
 }
 

@@ -23,6 +23,8 @@ void parse_mitchell(Properties &properties, Filter &filter) {
     filter.c = properties.number("C").value_or(1.0 / 3);
 }
 
+void parse_lanczos(Properties &properties, Filter &filter) { filter.radius = properties.number("radius").value_or(3); }
+
 struct FilterType {
     std::string name;
     int kind;
