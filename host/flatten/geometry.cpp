@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 #include <span>
 
@@ -40,6 +41,11 @@ private:
     FlatScene &scene_;
     uint mesh_ = 0; // index of the current one
 
+    void drop() {
+        if (dropped++ == 0)
+            first_dropped = mesh_;
+    }
+
     // What each kind of shape is to the device.
 
     void add_primitives(const TriangleMesh &mesh) {
@@ -64,7 +70,28 @@ private:
         add_triangle(first, {1, 3, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE});
     }
 
-    void add_primitives(const Sphere &) {}
+    void add_primitives(const Sphere &sphere) {
+        const uint id = SHAPE_sphere << OPAL_SHAPE_SHIFT | uint(scene_.sphere_blocks.size());
+        const Point3f center = flattening_(sphere.center);
+        SphereBlock block{};
+        block.radius[0] = flattening_.distance(sphere.radius);
+        if (!has_area(block.radius[0])) {
+            drop();
+            return;
+        }
+        block.inward[0] = sphere.inward;
+        block.mesh[0] = mesh_;
+        block.id[0] = id;
+        Box box;
+        for (int axis = 0; axis < 3; axis++) {
+            block.center[axis][0] = center[axis];
+            // The next float holds the end of the box, which is rounded.
+            box.lo[axis] = std::nextafter(center[axis] - block.radius[0], -Box::infinity);
+            box.hi[axis] = std::nextafter(center[axis] + block.radius[0], Box::infinity);
+        }
+        scene_.sphere_blocks.push_back(block);
+        soup.others.push_back({id, box, mesh_});
+    }
 
     // Returns the index of the first one.
     uint add_vertices(std::span<const Vec3> positions) {
@@ -79,8 +106,7 @@ private:
         for (uint &corner : corners)
             corner += first;
         if (!has_normal(soup.vertices[corners[0]], soup.vertices[corners[1]], soup.vertices[corners[2]])) {
-            if (dropped++ == 0)
-                first_dropped = mesh_;
+            drop();
             return;
         }
         soup.corners.push_back(corners);
@@ -140,11 +166,14 @@ TriangleSoup gather_primitives(const SceneDescription &description, const Flatte
     }
     if (gatherer.dropped > 0) {
         const Mesh &first = description.meshes[gatherer.first_dropped];
-        warn(fmt::format("{}{} of {} triangles dropped: no area is left of them in single precision, which rounds "
-                         "coordinates to {:.0e} of the scene's size; the first is one of {}",
-                         first.place.line ? first.place.text() + ": " : "", gatherer.dropped,
-                         gatherer.soup.corners.size() + gatherer.dropped, std::numeric_limits<float>::epsilon() / 2,
-                         first.name.empty() ? "a mesh without a name" : first.name));
+        warn(fmt::format(
+            "{}{} of {} {} dropped: no area is left of them in single precision, which rounds "
+            "coordinates to {:.0e} of the scene's size; the first is one of {}",
+            first.place.line ? first.place.text() + ": " : "", gatherer.dropped,
+            gatherer.soup.corners.size() + gatherer.soup.others.size() + gatherer.dropped,
+            std::holds_alternative<Sphere>(first.shape) || !gatherer.soup.others.empty() ? "triangles and spheres"
+                                                                                         : "triangles",
+            std::numeric_limits<float>::epsilon() / 2, first.name.empty() ? "a mesh without a name" : first.name));
     }
     return std::move(gatherer.soup);
 }
