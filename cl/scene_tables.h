@@ -8,6 +8,7 @@
 #include "emitters/list.h"
 #include "shapes/list.h"
 #include "shared/types.h"
+#include "textures/list.h"
 
 // TABLE(record, name, shown): an array of records; `shown` is what messages call it. The order is that of the
 // parameters.
