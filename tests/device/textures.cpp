@@ -1,5 +1,4 @@
 // Textures on the parameters of BSDFs. Some tests add a kind of texture to the sources.
-#include "flatten/textures.h"
 #include "support/probe.h"
 #include "textures/list.h"
 
@@ -87,16 +86,12 @@ TEST_CASE("A checkerboard has two by two squares, as Mitsuba has it", "[textures
     const std::vector<Lookup> lookups = {{0.1, 0.1, 0.4},  {0.6, 0.1, 0.2}, {0.1, 0.6, 0.2}, {0.6, 0.6, 0.4},
                                          {-0.1, 0.1, 0.2}, {1.1, 0.1, 0.4}, {0.5, 0.1, 0.4}, {0.5, 0.6, 0.2}};
     std::vector<Bsdf> materials(lookups.size(), Bsdf(bsdf_diffuse_record{.albedo = 1}));
-    LargeVector<uint> words;
-    TextureGatherer textures(words);
+    const size_t albedo = bsdf_parameters(BSDF_diffuse)[0].texture_word;
     for (size_t i = 0; i < lookups.size(); i++) // the probe asks at (0, 0)
-        materials[i].words[bsdf_parameters(BSDF_diffuse)[0].texture_word] =
-            textures.add(CheckerboardTexture{.to_uv = {{{5, 0, lookups[i].u}, {0, 5, lookups[i].v}}}});
-    FlatScene scene = scene_of_bsdfs(materials);
-    scene.textures = words;
-    scene.features.textured[BSDF_diffuse] = 1;
+        materials[i].textures[albedo] = CheckerboardTexture{.to_uv = {{{5, 0, lookups[i].u}, {0, 5, lookups[i].v}}}};
+    const FlatScene scene = scene_of_bsdfs(materials);
     for (int lanes : tested_lanes()) {
-        KernelProbe probe = probe_of(scene, lanes);
+        KernelProbe probe = probe_of(scene, lanes, Sources::embedded());
         for (size_t i = 0; i < lookups.size(); i++) {
             INFO(lanes << " lanes, uv " << lookups[i].u << " " << lookups[i].v);
             const Planes f = probe.bsdf_eval(unsigned(i), {0, 0, 1}, std::vector{Vec3{0, 0, 1}});
