@@ -22,6 +22,7 @@
     TABLE(MeshRecord, meshes, "meshes") \
     TABLE(uint, bsdfs, "words of bsdfs")                        /* records of bsdfs/list.h; equal ones are shared */ \
     TABLE(uint, textures, "words of textures")                  /* records of textures/list.h */ \
+    TABLE(uint, texels, "words of texels")                      /* bytes and floats of bitmaps */ \
     TABLE(EmitterRecord, emitters, "emitters") \
     TABLE(LightTriangle, light_triangles, "light triangles")
 

@@ -90,7 +90,7 @@ std::vector<uint> words_with_hemisphere(const Bsdf &bsdf, int hemisphere) {
 class BsdfGatherer {
 public:
     BsdfGatherer(int hemisphere, FlatScene &scene)
-        : hemisphere_(hemisphere), table_(scene.bsdfs), textures_(scene.textures) {}
+        : hemisphere_(hemisphere), table_(scene.bsdfs), textures_(scene.textures, scene.texels) {}
 
     // Returns the first word of the record. BSDFs come after those that they lead to.
     uint add(const Bsdf &bsdf) {

@@ -13,12 +13,20 @@ namespace opal {
 // Puts the record of each texture into a table, equal ones once.
 class TextureGatherer {
 public:
-    explicit TextureGatherer(LargeVector<uint> &table) : table_(table) {}
+    TextureGatherer(LargeVector<uint> &table, LargeVector<uint> &texels) : table_(table), texels_(texels) {}
     uint add(const Texture &texture); // returns the first word of its record
 
 private:
-    LargeVector<uint> &table_;
+    LargeVector<uint> &table_, &texels_;
     std::map<std::vector<uint>, uint> known_; // first word of each record
+    struct Place {
+        uint first, decode; // as in a record
+    };
+    std::map<std::pair<const Picture *, bool>, Place> pictures_; // by whether its values are encoded
+
+    std::vector<uint> words(const CheckerboardTexture &texture);
+    std::vector<uint> words(const BitmapTexture &texture);
+    Place place_of(const Picture &picture, bool encoded);
 };
 
 } // namespace opal
