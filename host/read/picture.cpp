@@ -105,6 +105,8 @@ Picture read_picture(const std::filesystem::path &file, FileHashes *hashes) {
         hashes->add(bytes);
     try {
         return decoded_png(file, bytes);
+    } catch (const Error &) {
+        throw;
     } catch (const std::runtime_error &error) { // of libpng
         throw Error(fmt::format("{}: cannot be read as a PNG: {}", file.string(), error.what()));
     }
