@@ -101,6 +101,8 @@ typedef struct {
     float cutoff_angle;       // radians
     float inverse_transition; // 1 / (cutoff_angle - beam width); if smooth, 2 / (cosine of the beam - of the cutoff)
     uint smooth;              // 1: it falls as in pbrt, 0: in proportion to the angle
+    uint texture;             // first word of the texture that multiplies the intensity, or OPAL_UNTEXTURED
+    float across[2][3];       // the texture's axes: unit vectors across the direction, over 2 tan cutoff_angle
 } emitter_spot_record;
 
 typedef struct {

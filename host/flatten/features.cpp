@@ -122,7 +122,16 @@ public:
     }
 
     Decision uv() const {
-        return {!scene.textures.empty(), scene.textures.empty() ? "there are no textures" : "there are textures"};
+        const bool textured = is_textured(description);
+        return {textured, textured ? "a material has a texture" : "no material has a texture"};
+    }
+
+    Decision light_textures() const {
+        const auto has = [](const EmitterRecord &emitter) {
+            return emitter.kind == EMITTER_spot && emitter.u.of_spot.texture != OPAL_UNTEXTURED;
+        };
+        return counted(std::size_t(std::ranges::count_if(scene.emitters, has)), scene.emitters.size(), "emitter",
+                       "emitters");
     }
 
     Decision hidden_emitters() const {
@@ -285,7 +294,8 @@ Features find_features(const SceneDescription &description, const FlatScene &sce
         second_general = second_general || (is_second_general(i) && decisions[i].on);
     for (unsigned i = 0; i < FEATURE_COUNT; i++)
         features.list[i] =
-            specialise || i == FEATURE_endless_paths || i == FEATURE_uv // general kernels of their own
+            specialise || i == FEATURE_endless_paths || i == FEATURE_uv ||
+                    i == FEATURE_light_textures // general kernels of their own
                 ? Feature{decisions[i].on, decisions[i].reason}
                 : Feature{general_has(i, lanes) && (second_general || !is_second_general(i)), "the general kernel"};
     for (int axis = 0; axis < AXIS_COUNT; axis++) {

@@ -89,8 +89,8 @@ std::vector<uint> words_with_hemisphere(const Bsdf &bsdf, int hemisphere) {
 
 class BsdfGatherer {
 public:
-    BsdfGatherer(int hemisphere, FlatScene &scene)
-        : hemisphere_(hemisphere), table_(scene.bsdfs), textures_(scene.textures, scene.texels) {}
+    BsdfGatherer(int hemisphere, TextureGatherer &textures, LargeVector<uint> &table)
+        : hemisphere_(hemisphere), textures_(textures), table_(table) {}
 
     // Returns the first word of the record. BSDFs come after those that they lead to.
     uint add(const Bsdf &bsdf) {
@@ -109,13 +109,13 @@ public:
 
 private:
     int hemisphere_;
+    TextureGatherer &textures_;
     LargeVector<uint> &table_;
-    TextureGatherer textures_;
     std::map<std::vector<uint>, uint> known_; // first word of each record
 };
 
-void gather_bsdfs(const SceneDescription &description, FlatScene &scene) {
-    BsdfGatherer gatherer(description.strategy[AXIS_hemisphere], scene);
+void gather_bsdfs(const SceneDescription &description, TextureGatherer &textures, FlatScene &scene) {
+    BsdfGatherer gatherer(description.strategy[AXIS_hemisphere], textures, scene.bsdfs);
     for (const Mesh &mesh : description.meshes)
         scene.meshes.push_back({gatherer.add(mesh.bsdf), OPAL_NONE});
         // Lanes that are not meant read records of other kinds as far as the longest one reaches.
@@ -182,11 +182,12 @@ FlatScene flatten(const SceneDescription &description, int lanes, bool with_face
     scene.crop = description.camera.window();
     fill_film(description.camera, scene.settings);
     fill_strategy(description, flattening, scene.settings);
-    gather_bsdfs(description, scene);
+    TextureGatherer textures(scene.textures, scene.texels);
+    gather_bsdfs(description, textures, scene);
     TriangleSoup soup = gather_primitives(description, flattening, scene, on_gathered);
     build_acceleration(soup, light_points(description, flattening, soup, scene.triangles),
                        with_face_list && lanes >= FACE_LIST_LANES, description.strategy.is_general(), scene);
-    gather_emitters(description, flattening, extent.radius(), soup, scene);
+    gather_emitters(description, flattening, extent.radius(), soup, textures, scene);
     scene.features = find_features(description, scene, lanes);
     return scene;
 }

@@ -6,6 +6,7 @@
 #include "shared/types.h"
 #include "textures/list.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -25,7 +26,30 @@ double srgb_decode(double x) { return x <= 0.04045 ? x / 12.92 : std::pow((x + 0
 
 constexpr uint byte_values = 256;
 
+double mean_of(const CheckerboardTexture &texture) {
+    return (luminance(texture.color0) + luminance(texture.color1)) / 2;
+}
+
+double mean_of(const BitmapTexture &texture) {
+    const Picture &picture = *texture.picture;
+    const bool encoded = picture.encoded && !texture.raw;
+    const auto linear = [encoded](double value) { return encoded ? srgb_decode(value) : value; };
+    const auto channels = std::size_t(picture.channels);
+    const std::size_t values = std::max(picture.bytes.size(), picture.floats.size());
+    Color sum{};
+    for (std::size_t i = 0; i < values; i++) {
+        const double value = linear(picture.bytes.empty() ? double(picture.floats[i]) : picture.bytes[i] / 255.0);
+        for (std::size_t c = i % channels; c < 3; c += channels)
+            sum[c] += value;
+    }
+    return luminance(sum) * double(channels) / double(values);
+}
+
 } // namespace
+
+double mean_luminance(const Texture &texture) {
+    return std::visit([](const auto &own) { return mean_of(own); }, texture);
+}
 
 std::vector<uint> TextureGatherer::words(const CheckerboardTexture &texture) {
     texture_checkerboard_record record{};

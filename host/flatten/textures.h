@@ -10,6 +10,9 @@
 
 namespace opal {
 
+// The mean of a texture over its unit square, as a luminance.
+double mean_luminance(const Texture &texture);
+
 // Puts the record of each texture into a table, equal ones once.
 class TextureGatherer {
 public:
