@@ -36,9 +36,10 @@ typedef struct {
 } Ray;
 
 // The nearest hit of each lane: its distance t; its coordinates u, v on the surface (of triangles the barycentric
-// weights of corners 1 and 2); the shape (SHAPE_*, unset in kernels of one shape); and the primitive's place among the
-// blocks of its shape: block * OPAL_WIDTH + place in the block, OPAL_NONE where nothing is hit. For face-list hits t is
-// approximate and u, v are unset; surface_at computes all three.
+// weights of corners 1 and 2; of spheres u is 1 where the ray leaves them, else 0); the shape (SHAPE_*, unset in
+// kernels of one shape); and the primitive's place among the blocks of its shape: block * OPAL_WIDTH + place in the
+// block, OPAL_NONE where nothing is hit. For face-list hits t is approximate and u, v are unset; surface_at computes
+// all three.
 typedef struct {
     real t, u, v;
     uints shape, place;

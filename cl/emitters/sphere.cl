@@ -42,8 +42,7 @@ static SphereView sphere_seen(const Scene *scene, uints id, ReferencePoint from)
 }
 
 // How far before the sphere shadow rays end, in half ulps of their length: a bound of the error of the next
-// intersection. That of o - center and of the ray's direction are 1 each, those of b, c and the discriminant 4, 4 and 5,
-// and the last few are those of the division.
+// intersection, 1 of o - center, 1 of the ray's direction, 4 of b, 4 of c, 5 of the discriminant, 1 of the division.
 #define SHADOW_END_ROUNDINGS 16
 
 static LightSample emitter_sphere_sample(const Scene *scene, uints id, v3 color, ReferencePoint from, v2 u, u2 bits) {

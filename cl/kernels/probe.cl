@@ -151,8 +151,8 @@ kernel void camera_rays(SCENE_PARAMETERS, global const float *given, global floa
     put(out, RAY_TMAX, stride, base, ray.tmax);
 }
 
-// Closest and any hit of rays; the light that a ray of unit direction meets: its radiance, and the density, solid angle
-// measure, with which light sampling at the ray's origin finds that direction.
+// Closest and any hit of rays; the surface; the light that a ray of unit direction meets: its radiance, and the
+// density, solid angle measure, with which light sampling at the ray's origin finds that direction.
 kernel void trace(SCENE_PARAMETERS, global const float *rays, global float *out, uint first, uint stride) {
     uint base = base_of_item(first);
     if (base >= stride) return;
@@ -180,4 +180,7 @@ kernel void trace(SCENE_PARAMETERS, global const float *rays, global float *out,
     put_uints(out, HIT_EMITTER, stride, base, uints_pick(met, id, (uints)(OPAL_NONE)));
     put_v3(out, HIT_RADIANCE_R, stride, base, radiance);
     put(out, HIT_LIGHT_DENSITY, stride, base, density);
+    put_v3(out, HIT_P_X, stride, base, s.p);
+    put_v3(out, HIT_NORMAL_X, stride, base, s.normal);
+    put(out, HIT_RAY_OFFSET, stride, base, s.ray_offset);
 }

@@ -29,13 +29,13 @@ static BlockTest intersect_sphere(global const SphereBlock *block, uint place, c
     places b = mul_add(sheared_x, (places)(shear_x), mul_add(sheared_y, (places)(shear_y), a * z));
     b = b * copysign((real1)(1), ray->scale_z);
     places c = mul_add(x, x, mul_add(y, y, z * z)) - radius * radius;
-    place_mask inside = discriminant > 0; // radius 0 is never met
+    place_mask inside = discriminant > 0;
     places q = fabs(b) + sqrt(inside ? discriminant : (places)(0));
     // Where b > 0 the ray enters behind its origin.
     place_mask receding = b > 0, far = receding | !(c * unit > ray->tmin * q);
     BlockTest test;
     test.distance = (receding ? -c : far ? q : c) * unit;
-    test.determinant = far & !receding ? (places)(a) : q;
+    test.determinant = (far & !receding) ? (places)(a) : q;
     test.b = far ? test.determinant : (places)(0);
     test.c = 0;
     test.inside = inside;

@@ -151,6 +151,60 @@ Sampled sampled_environment(KernelProbe &probe, Vec3 flat_from) {
     return sampled;
 }
 
+// Directions to a sphere that is alone, as points of the unit square: x is the share of the solid angle that is closer
+// to its middle, y the azimuth in turns. A uniform density over the directions is uniform there.
+class SphereDirections {
+public:
+    SphereDirections(const emitter_sphere_record &sphere, bool two_sided, Vec3 from) {
+        const Vec3 f = Vec3{sphere.center[0], sphere.center[1], sphere.center[2]} - from;
+        const double distance = length(f), sine = sphere.radius / distance;
+        const bool inside = (sphere.inward || two_sided) && distance < sphere.radius;
+        n_ = distance > 0 ? f * (1 / distance) : Vec3{0, 0, 1};
+        s_ = normalize(cross(n_, std::abs(n_.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
+        t_ = cross(n_, s_);
+        lowered_ = inside ? 2 : sine * sine / (1 + std::sqrt((1 - sine) * (1 + sine)));
+    }
+    double solid_angle() const { return turn * lowered_; }
+    Vec3 point_of(Vec3 d) const {         // 1 - cosine as |d - n|^2 / 2
+        constexpr double rounding = 1e-2; // that of d may lead past the edge of a small sphere
+        const Vec3 away = d - n_;
+        const double x = dot(away, away) / 2 / lowered_;
+        return {x < 1 + rounding ? std::min(x, 1.0) : x, angle_of({dot(d, s_), dot(d, t_), 0}) / turn, 0};
+    }
+    Vec3 direction_at(Vec3 point) const {
+        const double lowered = point.x * lowered_, sine = std::sqrt(lowered * (2 - lowered)), phi = turn * point.y;
+        return n_ * (1 - lowered) + s_ * (sine * std::cos(phi)) + t_ * (sine * std::sin(phi));
+    }
+
+private:
+    Vec3 n_, s_, t_;
+    double lowered_; // 1 - cosine of the directions, at most
+};
+
+Sampled sampled_sphere(KernelProbe &probe, Vec3 flat_from) {
+    const EmitterRecord &emitter = probe.scene().emitters.at(0);
+    // The device's point: its floats.
+    const Vec3 from{float(flat_from.x), float(flat_from.y), float(flat_from.z)};
+    const SphereDirections directions(emitter.u.of_sphere, emitter.two_sided != 0, from);
+    Sampled sampled;
+    sampled.name = "light";
+    sampled.domain = &stats::domain(DomainKind::square);
+    sampled.draw = [&probe, from, directions](const Planes &numbers, stats::Histogram &histogram) {
+        const Planes drawn = probe.light_sample(from, numbers);
+        for (size_t i = 0; i < drawn.count; i++)
+            histogram.add(drawn.at(LIGHT_ACTIVE, i) ? directions.point_of(drawn.vec3(LIGHT_D_X, i)) : no_point);
+    };
+    sampled.density = [&probe, from, directions](std::span<const Vec3> points, std::span<double> values) {
+        std::vector<Vec3> rays;
+        for (Vec3 point : points)
+            rays.push_back(directions.direction_at(point));
+        const Planes hits = probe.trace(rays_from(from, rays));
+        for (size_t i = 0; i < points.size(); i++)
+            values[i] = hits.at(HIT_LIGHT_DENSITY, i) * directions.solid_angle();
+    };
+    return sampled;
+}
+
 // Points on lights in the unit square.
 Sampled sampled_square(KernelProbe &probe, Vec3 from, Vec3 flat_from) {
     Sampled sampled;
@@ -182,8 +236,10 @@ Sampled sampled_square(KernelProbe &probe, Vec3 from, Vec3 flat_from) {
 Sampled sampled_lights(KernelProbe &probe, Vec3 from) {
     const FlatScene &scene = probe.scene();
     const Vec3 flat_from = (from - scene.center) * scene.scale;
-    return scene.settings.environment == OPAL_NONE ? sampled_square(probe, from, flat_from)
-                                                   : sampled_environment(probe, flat_from);
+    if (scene.settings.environment != OPAL_NONE)
+        return sampled_environment(probe, flat_from);
+    const bool is_sphere = scene.emitters.size() == 1 && scene.emitters[0].kind == EMITTER_sphere;
+    return is_sphere ? sampled_sphere(probe, flat_from) : sampled_square(probe, from, flat_from);
 }
 
 void draw_in_batches(KernelProbe &probe, size_t count, unsigned seed, const std::function<void(const Planes &)> &use) {

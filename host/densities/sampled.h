@@ -29,7 +29,8 @@ Sampled sampled_bsdf(KernelProbe &probe, unsigned id, Vec3 wi);
 bool is_discrete(const Bsdf &bsdf); // and nothing else
 
 // The lights of the probe's scene as they are seen from a point, in the scene's own units: points on lights in the unit
-// square of the plane z = 0, or directions to an environment that is alone. Delta lights have no density.
+// square of the plane z = 0, directions to an environment that is alone, or directions to a sphere that is alone, which
+// fill the unit square. Delta lights have no density.
 Sampled sampled_lights(KernelProbe &probe, Vec3 from = {0.2, 0.7, 0.6});
 
 // Rays from a point, in flattened units, that end nowhere.

@@ -147,6 +147,14 @@ const std::vector<LightRow> lights = {
          return std::vector<Mesh>{light_of(Parallelogram{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 1)};
      }},
     {"mesh", [] { return std::vector<Mesh>{light_triangles(0, 1, 1)}; }},
+    {"sphere",
+     [] {
+         return std::vector<Mesh>{light_of(Sphere{{0.5, 0.5, 0}, 0.4}, 1)};
+     }},
+    {"sphere_inside",
+     [] {
+         return std::vector<Mesh>{light_of(Sphere{{0.5, 0.5, 0}, 1, true}, 1)};
+     }},
     {"many",
      [] {
          return std::vector<Mesh>{

@@ -2,6 +2,7 @@
 
 #include "extremes/scenes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -119,10 +120,25 @@ double furnace_truth(double darkness, unsigned max_depth) {
     const double albedo = float(1 - darkness);
     return albedo < 1 ? -std::expm1(max_depth * std::log(albedo)) / (1 - albedo) : max_depth;
 }
+constexpr unsigned round_furnace_depth = 30;
+
 // The bounces after which less than e^-20 of the series remains, or 20000.
 unsigned enough_bounces(double darkness) { return darkness < 1e-4 ? 20000 : unsigned(20 / darkness); }
 SceneDescription bright_furnace(double darkness) { return furnace(darkness, enough_bounces(darkness)); }
 SceneDescription deep_furnace(double depth) { return furnace(0.1, unsigned(depth)); }
+
+// The furnace in a sphere of that radius, by all ways to find light: 1 / (1 - albedo) but for the last bounce.
+SceneDescription round_furnace(double radius) {
+    SceneDescription scene =
+        path_traced({made_of(Sphere{{}, radius, true}, diffuse(0.5))},
+                    camera(Vec3{0.1, 0.2, -0.3} * radius, Vec3{0.3, 0, 1} * radius, 70), round_furnace_depth);
+    scene.meshes[0].radiance = Color{1, 1, 1};
+    return scene;
+}
+SceneDescription ball_lamp(double radius) {
+    const double away = std::max(1.0, 2 * radius);
+    return floor_under(light(Sphere{{0, away, 0}, radius}, away * away / (radius * radius)), diffuse(0.5));
+}
 
 SceneDescription seen_through(double degrees) {
     SceneDescription scene = room();
@@ -267,6 +283,50 @@ const std::vector<StressRow> &stress_rows() {
          .picture = as_detail(room),
          .invariant = true,
          .closed = as_detail(closed_walls)},
+        {.name = "sphere-scale",
+         .stretched = "size of a scene of spheres",
+         .values = decades(-6, 6),
+         .start = 1,
+         .promised_from = 1e-4,
+         .promised_to = 1e4,
+         .picture = scaled(balls),
+         .invariant = true,
+         .closed = scaled(round_walls),
+         .open = scaled(open_ball)},
+        {.name = "sphere-distance",
+         .stretched = "distance of a scene of spheres from the origin, in sizes of the scene",
+         .values = joined({0}, decades(0, 7)),
+         .start = 0,
+         .promised_from = 0,
+         .promised_to = 1e4,
+         .picture = shifted(balls),
+         .invariant = true,
+         .closed = shifted(round_walls),
+         .open = shifted(open_ball)},
+        {.name = "sphere-detail",
+         .stretched = "size of the spheres that are looked at, the world having 1",
+         .values = reversed(decades(-6, -1)),
+         .start = 0.1,
+         .promised_from = 1e-3,
+         .promised_to = 0.1,
+         .picture = as_detail(balls),
+         .invariant = true,
+         .closed = as_detail(round_walls)},
+        {.name = "sphere-furnace",
+         .stretched = "radius of a sphere that is a furnace",
+         .values = decades(-4, 4),
+         .start = 1,
+         .promised_from = 1e-4,
+         .promised_to = 1e4,
+         .picture = round_furnace,
+         .truth = [](double) { return furnace_truth(0.5, round_furnace_depth); }},
+        {.name = "sphere-light",
+         .stretched = "radius of a sphere that lights a floor from distance 1, or from two radii",
+         .values = decades(-6, 3),
+         .start = 0.1,
+         .promised_from = 1e-4,
+         .promised_to = 1e2,
+         .picture = ball_lamp},
         {.name = "aspect",
          .stretched = "aspect of the triangles of closed walls",
          .values = decades(0, 7),

@@ -101,6 +101,24 @@ SceneDescription open_plane() {
                               rotation));
 }
 
+SceneDescription balls() {
+    return moved(
+        path_traced({made_of(Sphere{{}, 1, true}, diffuse(0.6)), made_of(Sphere{{0.35, -0.45, 0.3}, 0.3}, diffuse(0.7)),
+                     made_of(Sphere{{-0.3, -0.3, 0.2}, 0.25}, dielectric(1.5)),
+                     made_of(Sphere{{-0.5, 0.2, 0.5}, 0.25}, microfacet(0.15)),
+                     light(Sphere{{0.2, 0.6, 0.3}, 0.15}, 20)},
+                    camera({0.1, 0.05, -0.9}, {0, -0.1, 1}, 75), 8),
+        rotation);
+}
+
+SceneDescription round_walls() { return occlusion_of(balls()); }
+
+SceneDescription open_ball() {
+    return occlusion_of(
+        moved(path_traced({made_of(Sphere{{}, 1}, diffuse(0.5))}, camera({0.4, 1.1, -0.9}, {0.05, 0, 0.1}, 30), 1),
+              rotation));
+}
+
 SceneDescription moved(SceneDescription scene, double factor, Vec3 offset) {
     return moved(std::move(scene), Transform::translate(offset) * Transform::scale({factor, factor, factor}));
 }

@@ -23,6 +23,10 @@ SceneDescription closed_walls();
 // Ambient occlusion of a plane that fills the view: nothing blocks a ray, so that 1 minus the mean luminance is the
 // share of self-shadows.
 SceneDescription open_plane();
+// The same of spheres: a round room of balls, one of which is the light; a ball alone.
+SceneDescription balls();
+SceneDescription round_walls();
+SceneDescription open_ball();
 // The scene with ambient occlusion as its integrator.
 SceneDescription occlusion_of(SceneDescription scene);
 

@@ -28,27 +28,46 @@ PlaneHit meet(const HostRay &ray, const std::array<Vec3, 3> &p) {
 
 constexpr double doubt = 1e-4; // relative distance to an edge or a bound below which either answer is right
 
+// Where a ray's line enters and leaves a sphere, with u = 0 and u = 1. It may miss it: inside < 0.
+std::array<PlaneHit, 2> meet(const HostRay &ray, const SlotSphere &sphere) {
+    const Vec3 f = ray.o - sphere.center;
+    const double speed = length(ray.d), to_nearest = -dot(f, ray.d) / (speed * speed);
+    const double away = length(f + ray.d * to_nearest), half2 = sphere.radius * sphere.radius - away * away;
+    const double half = std::sqrt(std::max(half2, 0.0)) / speed;
+    // Of the smallest spheres single precision moves the edge by more than `doubt` of their radius.
+    const double inside = (sphere.radius - away) / std::max(sphere.radius, rounding / doubt);
+    // Where the line grazes, the chord's ends are as far off as those of one that lies deeper by the rounding.
+    const double least_half = std::sqrt(rounding * sphere.radius);
+    const double slack = rounding * sphere.radius / std::max(half * speed, least_half) / speed;
+    return {{{to_nearest - half, 0, 0, inside, slack}, {to_nearest + half, 1, 0, inside, slack}}};
+}
+
 // Adds to `errors` what is wrong with the device's answer `i`.
-void judge(const HostRay &ray, const std::vector<SlotTriangle> &triangles, const Planes &found, size_t i,
-           HitErrors &errors) {
+void judge(const HostRay &ray, const std::vector<SlotTriangle> &triangles, const std::vector<SlotSphere> &spheres,
+           const Planes &found, size_t i, HitErrors &errors) {
     double sure = INFINITY, possible = INFINITY; // the farthest and the nearest that the nearest hit may be
-    bool own = false;                            // the device's hit is one of those that may be
+    bool own = false, wrong_weights = false;     // the device's hit is one of those that may be; its u and v are not
     const uint slot = found.bits(HIT_SLOT, i);
     const double t = found.at(HIT_T, i);
-    for (const SlotTriangle &triangle : triangles) {
-        const PlaneHit m = meet(ray, triangle.corners);
+    const auto add = [&](const PlaneHit &m, uint its_slot) {
         const double slack = std::max(doubt * m.t, m.slack);
         if (m.inside > doubt && m.t > ray.tmin + slack && m.t < ray.tmax - slack)
             sure = std::min(sure, m.t + slack);
         if (m.inside > -doubt && m.t > ray.tmin - slack && m.t < ray.tmax + slack) {
             possible = std::min(possible, m.t - slack);
-            if (triangle.slot == slot) {
-                own = std::abs(m.t - t) <= slack;
-                errors.weights +=
+            if (its_slot == slot && std::abs(m.t - t) <= slack) {
+                own = true;
+                wrong_weights =
                     std::abs(m.u - found.at(HIT_U, i)) > 10 * doubt || std::abs(m.v - found.at(HIT_V, i)) > 10 * doubt;
             }
         }
-    }
+    };
+    for (const SlotTriangle &triangle : triangles)
+        add(meet(ray, triangle.corners), triangle.slot);
+    for (const SlotSphere &sphere : spheres)
+        for (const PlaneHit &m : meet(ray, sphere))
+            add(m, sphere.slot);
+    errors.weights += wrong_weights;
     const bool hit = slot != OPAL_NONE, any = found.at(HIT_ANY, i) != 0;
     errors.hits += hit;
     errors.closest += hit ? !own || t > sure || t < possible : std::isfinite(sure);
@@ -68,6 +87,18 @@ std::vector<SlotTriangle> triangles_by_slot(const FlatScene &scene) {
             triangles.push_back(triangle);
         }
     return triangles;
+}
+
+std::vector<SlotSphere> spheres_by_slot(const FlatScene &scene) {
+    std::vector<SlotSphere> spheres;
+    for (uint slot = 0; slot < 8 * scene.sphere_blocks.size(); slot++) {
+        const SphereBlock &block = scene.sphere_blocks[slot / 8];
+        const uint place = slot % 8;
+        if (block.id[place] != OPAL_NONE)
+            spheres.push_back(
+                {slot, {block.center[0][place], block.center[1][place], block.center[2][place]}, block.radius[place]});
+    }
+    return spheres;
 }
 
 Planes planes_of_rays(std::vector<HostRay> &rays) {
@@ -107,9 +138,10 @@ std::vector<HostRay> random_rays(size_t count, unsigned seed) {
 HitErrors errors_of_hits(KernelProbe &probe, std::vector<HostRay> rays) {
     const Planes found = probe.trace(planes_of_rays(rays));
     const std::vector<SlotTriangle> triangles = triangles_by_slot(probe.scene());
+    const std::vector<SlotSphere> spheres = spheres_by_slot(probe.scene());
     HitErrors errors;
     for (size_t i = 0; i < rays.size(); i++)
-        judge(rays[i], triangles, found, i, errors);
+        judge(rays[i], triangles, spheres, found, i, errors);
     return errors;
 }
 
@@ -133,6 +165,17 @@ SceneDescription triangle_soup(size_t triangles, double size, unsigned seed) {
         corners.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
     return scene_of_mesh(examples::mesh_of(std::move(positions), corners));
+}
+
+SceneDescription sphere_soup(size_t spheres, double least, double most, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(-1, 1), size(std::log(least), std::log(most));
+    SceneDescription scene;
+    for (size_t i = 0; i < spheres; i++) {
+        const Vec3 center{uniform(random), uniform(random), uniform(random)};
+        scene.meshes.push_back(examples::made_of(Sphere{center, std::exp(size(random)), i % 2 == 0}, Bsdf()));
+    }
+    return scene;
 }
 
 SceneDescription scene_of_mesh(TriangleMesh mesh) {

@@ -165,7 +165,7 @@ Findings run_lights(const Device &device, const SelftestOptions &options) {
     Findings findings;
     Effort effort = effort_of(options);
     effort.seed += 500;
-    for (const char *name : {"light:parallelogram", "light:mesh", "light:many"})
+    for (const char *name : {"light:parallelogram", "light:mesh", "light:many", "light:sphere", "light:sphere_inside"})
         for (const char *choice : {"uniform", "power"}) {
             const std::map<std::string, std::string> axes = {{"emitter-choice", choice},
                                                              {"triangle-choice", choice[0] == 'u' ? "uniform" : "area"},

@@ -38,6 +38,8 @@ Findings run_rays(const Device &device, const SelftestOptions &options) {
     KernelProbe soup = probe_of(triangle_soup(300, 0.4, seed), false),
                 sphere = probe_of(scene_of_mesh(edges::closed_sphere(16)), false);
     Findings findings = {check_hits("tree", soup, rays, seed + 1), check_edges("tree", sphere, seed + 2)};
+    KernelProbe balls = probe_of(sphere_soup(300, 1e-3, 0.4, seed + 6), false);
+    findings.push_back(check_hits("spheres", balls, rays, seed + 7));
     KernelProbe few = probe_of(triangle_soup(20, 0.4, seed + 3), true),
                 small = probe_of(scene_of_mesh(edges::closed_sphere(3)), true);
     if (!few.scene().features[FEATURE_tree]) {

@@ -3,6 +3,7 @@ import math
 
 from scenekit.lights import BLACK, room
 from scenekit.shapes import band, box, height_field, icosphere, join, lathe, polygons, segment, torus, torus_knot
+from scenekit.vec import scale
 from scenekit.write import Scene, bsdf, diffuse, microfacet, phong, rotate, scaling, translate
 
 GLASS, MIRROR = bsdf("dielectric"), bsdf("mirror")
@@ -46,6 +47,32 @@ reach through glass, so every one of their paths meets the lamp by chance.""", s
     scene.mesh("glass_ring", GLASS, translate(1, 0.01, 0.7))
     scene.mesh("sphere_1280", MIRROR, scaling(0.28), translate(1, 0.28, 0.7))
     scene.parallelogram((1.4, 3.9, 0.6), (0.6, 0, 0), (0, 0, 0.6), BLACK, (110, 104, 92))
+    return scene
+
+
+def spheres():
+    scene = Scene("spheres", """
+Exact spheres in a spiral, as the seeds of a sunflower lie, around a large one of glass: glass, mirrors, diffuse ones, and
+five that are lamps, one of them above. Those far out are large.""", spp=256)
+    scene.camera((0, 5, 9), (0, 0.35, 0.1), 35, 480, 360)
+    scene.parallelogram((-12, 0, 12), (24, 0, 0), (0, 0, -24), diffuse(0.3, 0.3, 0.32))
+    scene.sphere((0, 1, 0), 1, GLASS)
+    colors = [(0.75, 0.2, 0.12), (0.85, 0.5, 0.12), (0.8, 0.75, 0.55), (0.15, 0.42, 0.45), (0.1, 0.2, 0.45)]
+    tints = [(1, 0.55, 0.25), (1, 0.75, 0.45), (0.45, 0.75, 1), (1, 0.6, 0.5)]
+    lamps = [24, 39, 55, 70]
+    for k in range(14, 84):
+        angle, away = k * math.pi * (3 - math.sqrt(5)), 0.42 * math.sqrt(k)
+        r = 0.1 + 0.0018 * k
+        center = (away * math.cos(angle), r, away * math.sin(angle))
+        if k in lamps:
+            scene.sphere(center, r, BLACK, scale(tints[lamps.index(k)], 16))
+        elif k % 5 == 0:
+            scene.sphere(center, r, GLASS)
+        elif k % 7 == 0:
+            scene.sphere(center, r, MIRROR)
+        else:
+            scene.sphere(center, r, diffuse(*colors[k % len(colors)]))
+    scene.sphere((-3.5, 6, 1.5), 1.2, BLACK, (38, 36, 33))
     return scene
 
 
@@ -142,4 +169,4 @@ Modified Phong (Lafortune and Willems 1994) with exponents 1, 10, 100 and 1000, 
     microfacet_row = row("microfacet_alphas", """
 Beckmann microfacets over a diffuse ground with alpha 0.01, 0.05, 0.1, 0.2 and 0.5, from left to right.""",
                          [microfacet(alpha, (0.08, 0.2, 0.35), 1.8) for alpha in (0.01, 0.05, 0.1, 0.2, 0.5)])
-    return [phong_row, microfacet_row, caustic(), mixed_room()]
+    return [phong_row, microfacet_row, caustic(), mixed_room(), spheres()]

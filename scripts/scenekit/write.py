@@ -115,6 +115,10 @@ class Scene:
         self.meshes.append(('<emitter type="directional">', f'<vector name="direction" value="{triple(direction)}"/>',
                             color("irradiance", irradiance)))
 
+    def sphere(self, center, radius, material, radiance=None):
+        self._add('<mesh type="sphere">', [f'<point name="center" value="{triple(center)}"/>', real("radius", radius)],
+                  material, (), radiance)
+
     def _add(self, tag, shape, material, transform, radiance):
         parts = [tag, *shape]
         if transform:

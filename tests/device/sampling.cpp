@@ -38,6 +38,9 @@ TEST_CASE("Parts of BSDFs are drawn with the probability that the density states
 TEST_CASE("Emitters draw by their densities", "[sampling][stat]") {
     require_all_pass(check_emitters(Sources::embedded(), test_seed(123)));
 }
+TEST_CASE("Lights that are spheres, from near, far and inside", "[sampling][stat]") {
+    require_all_pass(check_sphere_lights(Sources::embedded(), test_seed(125)));
+}
 
 TEST_CASE("A file dropped among the cases is tested, and a wrong one fails", "[sampling]") {
     const ScratchFolder folder;

@@ -1,5 +1,5 @@
 // flatten of wild scenes that are made from bytes: coordinates at the ends of single precision, copies, needles, grids,
-// parallelograms and lights.
+// parallelograms, spheres and lights.
 #include "base/error.h"
 #include "fuzz/harness.h"
 #include "fuzz/oracles.h"
@@ -111,6 +111,13 @@ void add_object(FuzzedDataProvider &bytes, SceneDescription &scene) {
         if (!(length(cross(shape.u, shape.v)) > 1e-12 * length(shape.u) * length(shape.v))) // the reader refuses it
             return;
         mesh.shape = shape;
+        break;
+    }
+    case 3: {
+        const double radius = std::abs(coordinate(bytes));
+        if (!(radius > 0)) // the reader refuses it
+            return;
+        mesh.shape = Sphere{point(bytes), radius, bytes.ConsumeBool()};
         break;
     }
     default:

@@ -18,28 +18,52 @@ template <class Numbers> bool all_finite(const Numbers &numbers) {
 
 bool is_share(float x) { return x >= 0 && x <= 1; }
 
-// Marks the triangles of a block; unused places come last.
-void mark(const TriangleBlock &block, std::vector<bool> &met) {
+// The primitives that were met, by shape and index.
+using Met = std::array<std::vector<bool>, SHAPE_COUNT>;
+
+// Marks the primitives of a block; unused places come last.
+void mark_ids(const uint (&ids)[OPAL_WIDTH], int shape, Met &met) {
     bool ended = false;
-    for (const uint id : block.id) {
+    for (const uint id : ids) {
         ended = ended || id == OPAL_NONE;
         require(ended == (id == OPAL_NONE), "unused places of a block come last");
         if (ended)
             continue;
-        require(id < met.size(), "ids in a block are those of triangles");
-        met[id] = true;
+        require(shape_of(id) == uint(shape), "ids in a block are of its shape");
+        const uint index = id & OPAL_BLOCK_BITS;
+        require(index < met[shape].size(), "ids in a block are those of primitives");
+        met[shape][index] = true;
     }
-    for (const auto &corner : block.vertex)
-        for (const auto &axis : corner)
-            require(std::ranges::all_of(axis, [](float x) { return std::abs(x) <= 2; }), "positions lie around 0");
 }
 
-// Marks the triangles in the leaves below the root.
-void check_tree(const FlatScene &scene, std::vector<bool> &met) {
+template <class Row> void check_around_0(const Row &row) {
+    require(std::ranges::all_of(row, [](float x) { return std::abs(x) <= 2; }), "positions lie around 0");
+}
+
+void mark(const TriangleBlock &block, Met &met) {
+    mark_ids(block.id, SHAPE_triangle, met);
+    for (const auto &corner : block.vertex)
+        for (const auto &axis : corner)
+            check_around_0(axis);
+}
+
+void mark(const SphereBlock &block, Met &met) {
+    mark_ids(block.id, SHAPE_sphere, met);
+    for (const auto &axis : block.center)
+        check_around_0(axis);
+    check_around_0(block.radius);
+    require(std::ranges::all_of(block.radius, [](float r) { return r > 0; }), "spheres have a size");
+}
+
+// Marks the primitives in the leaves below the root.
+void check_tree(const FlatScene &scene, Met &met) {
     Bvh tree;
     tree.nodes = scene.nodes;
     require(levels_of(tree) <= OPAL_LEVELS, "a tree has at most OPAL_LEVELS levels");
-    std::vector<bool> node_met(scene.nodes.size()), leaf_met(scene.triangle_blocks.size());
+    std::vector<bool> node_met(scene.nodes.size());
+    Met leaf_met;
+    leaf_met[SHAPE_triangle].resize(scene.triangle_blocks.size());
+    leaf_met[SHAPE_sphere].resize(scene.sphere_blocks.size());
     std::vector<uint> left{0};
     while (!left.empty()) {
         const uint index = left.back();
@@ -56,12 +80,17 @@ void check_tree(const FlatScene &scene, std::vector<bool> &met) {
                 continue;
             if (child & OPAL_LEAF) {
                 const uint block = child & OPAL_BLOCK_BITS;
-                require(shape_of(child & ~OPAL_LEAF) == SHAPE_triangle, "leaves hold triangles");
-                require(block < scene.settings.face_list_slot / OPAL_WIDTH || scene.faces.empty(),
+                const uint shape = shape_of(child & ~OPAL_LEAF);
+                require(shape < SHAPE_COUNT, "leaves have a shape");
+                require(shape != SHAPE_triangle || block < scene.settings.face_list_slot / OPAL_WIDTH ||
+                            scene.faces.empty(),
                         "listed, not in a leaf");
-                require(block < leaf_met.size() && !leaf_met[block], "each leaf is met once");
-                leaf_met[block] = true;
-                mark(scene.triangle_blocks[block], met);
+                require(block < leaf_met[shape].size() && !leaf_met[shape][block], "each leaf is met once");
+                leaf_met[shape][block] = true;
+                if (shape == SHAPE_triangle)
+                    mark(scene.triangle_blocks[block], met);
+                else
+                    mark(scene.sphere_blocks[block], met);
                 continue;
             }
             require(child < scene.nodes.size(), "children are nodes");
@@ -165,11 +194,15 @@ bool has_finite_lights(const FlatScene &scene) {
 }
 
 void check(const FlatScene &scene) {
-    std::vector<bool> met(scene.triangles.size());
+    size_t spheres = 0;
+    for (const SphereBlock &block : scene.sphere_blocks)
+        spheres += size_t(std::ranges::count_if(block.id, [](uint id) { return id != OPAL_NONE; }));
+    Met met{std::vector<bool>(scene.triangles.size()), std::vector<bool>(spheres)};
     if (!scene.nodes.empty())
         check_tree(scene, met);
-    check_face_list(scene, met);
-    require(std::ranges::all_of(met, std::identity()), "every triangle is in a block");
+    check_face_list(scene, met[SHAPE_triangle]);
+    for (const std::vector<bool> &of_shape : met)
+        require(std::ranges::all_of(of_shape, std::identity()), "every primitive is in a block");
     require(std::isfinite(scene.scale) && scene.scale > 0 && is_finite(scene.center), "the map of positions is finite");
     check_materials(scene);
     check_emitters(scene);

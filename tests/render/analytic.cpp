@@ -19,6 +19,10 @@ TEST_CASE("A triangle light over a floor follows Lambert's formula", "[analytic]
     require_all_pass(check_triangle_light(Sources::embedded(), test_seed(3)));
 }
 
+TEST_CASE("A sphere light follows the formula for its irradiance, and a round furnace is one", "[analytic][stat]") {
+    require_all_pass(check_sphere_light(Sources::embedded(), test_seed(6)));
+}
+
 TEST_CASE("A point light follows the inverse square", "[analytic][stat]") {
     require_all_pass(check_point_light(Sources::embedded(), test_seed(4)));
 }

@@ -27,6 +27,8 @@ bool in_unit_square(const Parallelogram &p) {
 }
 bool in_unit_square(const Sphere &) { return false; }
 
+bool in_unit_square(const Sphere &) { return true; } // its directions are counted
+
 } // namespace
 
 std::vector<Material> bsdf_cases(const std::filesystem::path &folder) {

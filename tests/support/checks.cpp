@@ -134,6 +134,25 @@ Findings check_triangle_light(const Sources &sources, unsigned seed) {
     return findings;
 }
 
+Findings check_sphere_light(const Sources &sources, unsigned seed) {
+    Findings findings;
+    const auto shows = [&](const SceneDescription &scene, const std::string &what, const Overrides &how, unsigned spp,
+                           double truth) {
+        const Film film = render_general(scene, how, spp, seed + unsigned(findings.size()), sources);
+        findings.push_back(mean_is(what + ", " + text_of(how), film, truth, 0));
+        findings.push_back(exact("no invalid samples", film.invalid == 0));
+    };
+    for (const char *lighting : {"bsdf", "emitter", "mis"}) {
+        shows(round_furnace(0.5, 1), "round furnace", {{"lighting", lighting}}, 128, 2);
+        shows(sphere_light(0.6), "sphere light", {{"lighting", lighting}}, 4096, sphere_light_truth());
+    }
+    for (const char *lighting : {"emitter", "mis"})
+        for (const double radius : {1e-2, 1e-4})
+            shows(sphere_light(radius), "sphere light of radius " + std::to_string(radius), {{"lighting", lighting}},
+                  1024, sphere_light_truth());
+    return findings;
+}
+
 Findings check_point_light(const Sources &sources, unsigned seed) {
     Findings findings;
     for (const Overrides &how :

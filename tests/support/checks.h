@@ -26,7 +26,8 @@ using Check = std::function<Findings(const Sources &sources, unsigned seed)>;
 Findings check_furnace(const Sources &sources, unsigned seed);
 Findings check_glass_furnace(const Sources &sources, unsigned seed);
 Findings check_triangle_light(const Sources &sources, unsigned seed);
-Findings check_point_light(const Sources &sources, unsigned seed); // integrator simple, too
+Findings check_sphere_light(const Sources &sources, unsigned seed); // and the furnace in a sphere
+Findings check_point_light(const Sources &sources, unsigned seed);  // integrator simple, too
 Findings check_smooth_normals(const Sources &sources, unsigned seed);
 
 // Discrete choices are drawn with the probability that their weights state: to 1e-6, without statistics.

@@ -78,6 +78,12 @@ Finding probabilities_sum(const std::string &what, const FlatScene &flat) {
                  std::abs(emitters - 1) < 1e-6 && std::abs(triangles - meshes) < 1e-6 * (1 + meshes));
 }
 
+// Whether a sphere's normals point to the side of a point.
+bool is_before(const emitter_sphere_record &sphere, Vec3 from) {
+    const Vec3 center{sphere.center[0], sphere.center[1], sphere.center[2]};
+    return (length(from - center) < sphere.radius) == (sphere.inward != 0);
+}
+
 // What sampling reports of a direction, against a ray of that direction: emitter, distance, radiance and density. From
 // below, the backs of lights in the unit square are seen.
 Finding samples_agree(const std::string &what, KernelProbe &probe, unsigned seed) {
@@ -94,7 +100,9 @@ Finding samples_agree(const std::string &what, KernelProbe &probe, unsigned seed
             directions.push_back(drawn.vec3(LIGHT_D_X, i));
         const Planes hits = probe.trace(rays_from(from, directions));
         for (size_t i = 0; i < drawn.count; i++) {
-            const bool lit = height > 0 || around || probe.scene().emitters[drawn.bits(LIGHT_ID, i)].two_sided != 0;
+            const EmitterRecord &emitter = probe.scene().emitters[drawn.bits(LIGHT_ID, i)];
+            const bool front = emitter.kind == EMITTER_sphere ? is_before(emitter.u.of_sphere, from) : height > 0;
+            const bool lit = front || around || emitter.two_sided != 0;
             wrong += drawn.at(LIGHT_ACTIVE, i) != (lit ? 1 : 0);
             if (lit)
                 wrong += hits.bits(HIT_EMITTER, i) != drawn.bits(LIGHT_ID, i) ||
@@ -242,7 +250,8 @@ Findings check_lights(const std::vector<LightCase> &cases, const Sources &source
     Findings findings;
     for (const LightCase &light : cases)
         if (const auto *mesh = std::get_if<Mesh>(&light.emitter)) {
-            meshes.push_back(*mesh);
+            if (!std::holds_alternative<Sphere>(mesh->shape)) // which is none any more in a column
+                meshes.push_back(*mesh);
             scenes.emplace_back(light.name, scene_of({*mesh}));
         } else
             append(findings, check_light(light.name, std::get<Light>(light.emitter), sources, seed++));
@@ -272,6 +281,30 @@ Findings check_lights(const std::vector<LightCase> &cases, const Sources &source
 }
 
 Findings check_emitters(const Sources &sources, unsigned seed) { return check_lights(emitter_cases(), sources, seed); }
+
+Findings check_sphere_lights(const Sources &sources, unsigned seed) {
+    Findings findings;
+    // Distances of the centre, in radii.
+    for (const double distance : {0.0, 0.4, 1 - 1e-5, 1 + 1e-5, 1.01, 2.0, 100.0, 1e4})
+        for (int lanes : tested_lanes()) {
+            Mesh mesh = light(Sphere{{0.1, -0.2, 0.3}, 0.7, distance < 1}, {4, 2, 1});
+            const FlatScene flat = flatten(with_strategy(scene_of({mesh}), {{"specialise", "off"}}), lanes);
+            KernelProbe probe = probe_of(flat, lanes, sources);
+            Effort effort = effort_at(lanes, seed + unsigned(findings.size()));
+            const std::string what = "a sphere " + std::to_string(distance) + " radii away" + at_width(lanes);
+            const Vec3 from = Vec3{0.1, -0.2, 0.3} + normalize({3, -2, 6}) * (0.7 * distance);
+            if (distance > 10) { // where the quadrature would see how directions are rounded
+                effort.samples = 50'000;
+                Sampled sampled = sampled_lights(probe, from);
+                sampled.relative_error = 1e-2;
+                const DensityCheck check = check_density(probe, sampled, 10, 10, effort.samples, effort.seed);
+                findings.push_back(p_value("directions against density", check.test.result.p_value, what));
+            } else {
+                append(findings, light_findings(probe, sampled_lights(probe, from), what, effort));
+            }
+        }
+    return findings;
+}
 
 Findings check_trigonometry(const Sources &sources, unsigned seed) {
     Findings findings;

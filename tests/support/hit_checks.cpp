@@ -143,7 +143,107 @@ Finding along_walls(int lanes, const Sources &sources, unsigned seed) {
     return none_wrong("rays along a cube's walls end nowhere, or outside", double(wrong), "a cube" + at_width(lanes));
 }
 
+// Spheres that lie apart, with radii over seven decades: each in a cell of a grid over [-1, 1]^3.
+SceneDescription spheres_apart(unsigned seed) {
+    constexpr int side = 10;
+    constexpr double half_cell = 1.0 / side;
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    SceneDescription scene;
+    for (int cell = 0; cell < side * side * side; cell++) {
+        const double radius = 0.9 * half_cell * std::pow(10, -7 * uniform(random));
+        Vec3 center{};
+        for (double *axis : {&center.x, &center.y, &center.z})
+            *axis = (2 * uniform(random) - 1) * (half_cell - radius);
+        const Vec3 corner = Vec3{double(cell % side), double(cell / side % side), double(cell / side / side)};
+        center = center + corner * (2 * half_cell) + Vec3{1, 1, 1} * (half_cell - 1);
+        scene.meshes.push_back(diffuse(Sphere{center, radius, cell % 2 == 0}));
+    }
+    return scene;
+}
+
+Vec3 random_direction(std::mt19937 &random) {
+    std::normal_distribution<double> normal;
+    return normalize({normal(random), normal(random), normal(random)});
+}
+
+// A unit vector across a unit vector.
+Vec3 across(Vec3 n, std::mt19937 &random) { return normalize(cross(n, random_direction(random))); }
+
+// A number in (0, 1) that is often tiny.
+double tiny(std::mt19937 &random) { return std::pow(10, -8 * std::uniform_real_distribution<double>(0, 1)(random)); }
+
+// Rays meet spheres, half of them at a grazing angle, and leave in directions of which half graze again. Those that
+// start outside must not meet the same sphere, those that start inside must.
+Findings leave_spheres(const std::string &what, const SceneDescription &scene, size_t count, int lanes,
+                       const Sources &sources, unsigned seed) {
+    const FlatScene flat = flatten(scene, lanes);
+    const std::vector<SlotSphere> spheres = spheres_by_slot(flat);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    std::vector<HostRay> rays;
+    for (size_t i = 0; i < count; i++) {
+        const SlotSphere &sphere = spheres[random() % spheres.size()];
+        const Vec3 far{uniform(random) * 3, uniform(random) * 3, uniform(random) * 3};
+        const Vec3 from = i % 4 == 3 ? sphere.center + random_direction(random) * (sphere.radius / 2) : far;
+        const double aside = sphere.radius * std::sqrt(1 - (i % 2 ? std::abs(uniform(random)) : tiny(random)));
+        const Vec3 to = sphere.center + across(normalize(sphere.center - from), random) * aside;
+        rays.push_back({from, to - from, 0, 1e30});
+    }
+    KernelProbe probe = probe_of(flat, lanes, sources);
+    const Planes met = probe.trace(planes_of_rays(rays));
+    std::vector<HostRay> leaving;
+    std::vector<uint> left;     // the sphere of each
+    std::vector<bool> outwards; // whether it starts outside
+    for (size_t i = 0; i < met.count; i++) {
+        const uint slot = met.bits(HIT_SLOT, i);
+        if (slot == OPAL_NONE)
+            continue;
+        const SphereBlock &block = flat.sphere_blocks[slot / 8];
+        const Vec3 n = met.vec3(HIT_NORMAL_X, i);
+        const double rise = (random() % 2 ? 1 : tiny(random)) * uniform(random), offset = met.at(HIT_RAY_OFFSET, i);
+        HostRay ray{{}, normalize(across(n, random) + n * rise), 0, 1e30};
+        // As leave_surface(), whose choice is rounding in a direction along the surface.
+        const double slope = dot(n, ray.d), side = std::abs(slope) < 1e-7 && random() % 2 ? -slope : slope;
+        ray.o = met.vec3(HIT_P_X, i) + n * std::copysign(offset, side);
+        const bool out = (side > 0) != (block.inward[slot % 8] != 0);
+        if (!out && block.radius[slot % 8] < 4 * offset)
+            continue; // single precision has no point inside
+        leaving.push_back(ray);
+        left.push_back(slot);
+        outwards.push_back(out);
+    }
+    const Planes again = probe.trace(planes_of_rays(leaving));
+    size_t shadowed = 0, lost = 0, out = 0;
+    for (size_t i = 0; i < again.count; i++) {
+        const bool own = again.bits(HIT_SLOT, i) == left[i];
+        out += outwards[i];
+        shadowed += outwards[i] && own;
+        lost += !outwards[i] && !(own && again.at(HIT_U, i) > 0.5 && again.at(HIT_ANY, i) == 1);
+    }
+    const std::string where = what + at_width(lanes);
+    return {none_wrong("rays that leave a sphere and meet it", double(shadowed), where),
+            none_wrong("rays inside a sphere that do not end there", double(lost), where),
+            exact(where + ": many rays start outside, many inside", out > count / 5 && again.count - out > count / 5)};
+}
+
 } // namespace
+
+Findings check_spheres(const Sources &sources, unsigned seed) {
+    SceneDescription mixed = sphere_soup(150, 1e-2, 0.3, seed), triangles = triangle_soup(300, 0.15, seed + 1);
+    mixed.meshes.insert(mixed.meshes.begin() + 70, triangles.meshes[0]);
+    Findings findings =
+        compare_all("300 spheres", sphere_soup(300, 1e-3, 0.4, seed + 2), tested_lanes(), sources, seed + 3);
+    append(findings, compare_all("spheres and triangles", mixed, tested_lanes(), sources, seed + 4));
+    SceneDescription alone;
+    alone.meshes = {diffuse(Sphere{{0.3, -0.2, 7}, 1e3})};
+    for (int lanes : tested_lanes()) {
+        const size_t count = lanes == 1 ? 100'000 : 500'000;
+        append(findings, leave_spheres("1000 spheres apart", spheres_apart(seed + 5), count, lanes, sources, seed + 6));
+        append(findings, leave_spheres("a sphere alone", alone, count, lanes, sources, seed + 7));
+    }
+    return findings;
+}
 
 Findings check_tree(const Sources &sources, unsigned seed) {
     Findings findings =

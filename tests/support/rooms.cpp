@@ -110,6 +110,26 @@ SceneDescription averted_light() {
     return scene;
 }
 
+SceneDescription round_furnace(double albedo, double emitted) {
+    SceneDescription scene = furnace(albedo, emitted);
+    for (Mesh &mesh : scene.meshes)
+        mesh.shape = Sphere{{}, 1, true};
+    return scene;
+}
+
+SceneDescription sphere_light(double radius) {
+    const Vec3 center = floor_point + Vec3{0.4, 1.1, -0.2};
+    const double distance = length(center - floor_point), red = std::pow(distance / radius, 2);
+    SceneDescription scene = scene_of(
+        {diffuse(Parallelogram{center + Vec3{-3, -1.1, -3}, {0, 0, 6}, {6, 0, 0}}, float(floor_albedo), true),
+         light(Sphere{center, radius}, {red, red / 2, red / 3}), diffuse(Sphere{center + Vec3{2.5, 1, 2.5}, 0.1})});
+    scene.camera = camera({2, 1.5, -2}, floor_point, 4, 4, 1e-3);
+    scene.strategy.max_depth = 2;
+    return scene;
+}
+
+double sphere_light_truth() { return floor_albedo * 1.1 / length(Vec3{0.4, 1.1, -0.2}); }
+
 Vec3 smooth_normal() { return normalize({0.5, 0.3, 0.2}); }
 
 SceneDescription smooth_octahedron() {

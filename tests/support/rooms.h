@@ -38,6 +38,14 @@ double triangle_light_truth();
 SceneDescription point_light();
 double point_light_truth(); // albedo / pi * power / (4 pi) * cos / d^2
 
+// The furnace in a sphere.
+SceneDescription round_furnace(double albedo, double emitted);
+
+// A sphere of that radius above a floor, seen as the triangle light's floor is, at the middle of the scene, where
+// floats are densest. The irradiance is pi L (radius / d)^2 cos, and red has the radiance sphere_light_truth().
+SceneDescription sphere_light(double radius);
+double sphere_light_truth();
+
 // A closed room with each BSDF, each kind of area light (the mesh light's triangles differ 170-fold in area), shading
 // normals: 45 triangles, so that 4 lanes and more do without a tree.
 SceneDescription gallery(int width = 16, int height = 16);
