@@ -289,6 +289,9 @@ TEST_CASE_METHOD(DocumentFixture, "names stand for values", "[mitsuba_document][
          {{"one", "1"}});
     CHECK(mistakes_in("<string name='p' value='$x'/>" + x) ==
           ":2:1: $x has no value: -D x=VALUE gives one, or <default name=\"x\" value=\"...\"/> in <scene>");
+    CHECK_THAT(mistakes_in("<float name='p' value='$x'/><include filename='$x'/><transform name='t'><scale x='$x'/>"
+                           "</transform>"), // nothing follows from it
+               !Catch::Contains("is not a number") && !Catch::Contains("there is no file"));
     CHECK_THAT(mistakes_in("<default name='depth' value='3'/><string name='p' value='$deptj'/>"),
                Catch::Contains("did you mean '$depth'?"));
     CHECK(mistakes_in("<string name='p' value='$'/>") == ":2:1: a '$' without a name; '\\$' stands for a dollar sign");
