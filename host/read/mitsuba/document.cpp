@@ -451,18 +451,21 @@ void Document::upgrade(Object &object) {
 }
 
 // Names of properties and children that stand for one are there once.
-void Document::check_repeated(const Object &object) const {
-    std::vector<const Object::Property *> named;
-    for (const Object::Property &property : object.properties_)
+void Document::check_repeated(Object &object) const {
+    std::vector<Object::Property *> named;
+    for (Object::Property &property : object.properties_)
         if (!property.name.empty())
             named.push_back(&property);
     std::ranges::stable_sort(named, {}, &Object::Property::name);
-    for (size_t i = 1, first = 0; i < named.size(); i++)
-        if (named[i]->name != named[first]->name)
+    for (size_t i = 1, first = 0; i < named.size(); i++) {
+        if (named[i]->name != named[first]->name) {
             first = i;
-        else
-            context_.mistake(named[i]->node, fmt::format("property '{}' is repeated; it stands first at {}",
-                                                         named[i]->name, named[first]->node.place().text()));
+            continue;
+        }
+        context_.mistake(named[i]->node, fmt::format("property '{}' is repeated; it stands first at {}", named[i]->name,
+                                                     named[first]->node.place().text()));
+        named[i]->asked = true; // finish() says no more of it
+    }
 }
 
 void Document::resolve_references() {

@@ -48,7 +48,7 @@ private:
     void read_alias(const XmlNode &node);
     void read_reference(File &file, const XmlNode &node, Object &parent);
     static void upgrade(Object &object);
-    void check_repeated(const Object &object) const;
+    void check_repeated(Object &object) const;
     bool add_id(const XmlNode &node, const std::string &id, Object &object);
     void resolve_references();
     void check_graph(Object &root);
