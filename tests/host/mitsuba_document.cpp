@@ -163,6 +163,19 @@ TEST_CASE_METHOD(DocumentFixture, "types of properties", "[mitsuba_document][mit
     CHECK(value_error("<rgb name='p' value='1'><float name='q' value='1'/></rgb>") == ":2:46: <rgb> holds nothing");
     CHECK(value_error("<float name='p' value='1'/>\n<integer name='p' value='1'/>") ==
           ":3:1: property 'p' is repeated; it stands first at :2:22");
+    CHECK(mistakes_of("<shape type='x'><float name='p' value='1'/>\n<float name='p' value='1'/></shape>",
+                      [](Object &root) {
+                          Object &shape = *root.children("shape").at(0);
+                          CHECK(shape.number("p") == 1);
+                          shape.finish(); // says no more of the second one
+                      }) == ":3:1: property 'p' is repeated; it stands first at :2:17");
+    CHECK(mistakes_of(
+              "<bsdf type='diffuse' id='b'/><shape type='x'><ref name='p' id='b'/>\n<ref name='p' id='b'/></shape>",
+              [](Object &root) {
+                  Object &shape = *root.children("shape").at(0);
+                  CHECK(shape.child_named("p"));
+                  shape.finish();
+              }) == ":3:1: property 'p' is repeated; it stands first at :2:46");
     CHECK(value_error("<rgb name='p' value='1'/>\n<texture type='bitmap' name='p'/>") ==
           ":3:1: property 'p' is repeated; it stands first at :2:22");
 }
@@ -289,6 +302,9 @@ TEST_CASE_METHOD(DocumentFixture, "names stand for values", "[mitsuba_document][
          {{"one", "1"}});
     CHECK(mistakes_in("<string name='p' value='$x'/>" + x) ==
           ":2:1: $x has no value: -D x=VALUE gives one, or <default name=\"x\" value=\"...\"/> in <scene>");
+    CHECK_THAT(mistakes_in("<float name='p' value='$x'/><include filename='$x'/><transform name='t'><scale x='$x'/>"
+                           "</transform>"), // nothing follows from it
+               !Catch::Contains("is not a number") && !Catch::Contains("there is no file"));
     CHECK_THAT(mistakes_in("<default name='depth' value='3'/><string name='p' value='$deptj'/>"),
                Catch::Contains("did you mean '$depth'?"));
     CHECK(mistakes_in("<string name='p' value='$'/>") == ":2:1: a '$' without a name; '\\$' stands for a dollar sign");

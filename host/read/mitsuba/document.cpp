@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <numeric>
 
 namespace opal::mitsuba {
 
@@ -164,13 +163,25 @@ void Document::check_definitions(const Definitions &given, const SourcePlace &pl
     for (const auto &[name, value] : used_)
         known.push_back(name);
     for (const auto &[name, value] : given)
-        if (!used_.contains(name) && !lacks_some_value_)
+        if (!used_.contains(name) && names_without_value_ == 0)
             throw UsageError(fmt::format("{}: {}: no attribute holds ${}", place.text(),
                                          unknown_name("name of -D", name, known), name));
 }
 
-void Document::replace_names(const XmlNode &node) {
+// Whether each name has a value; if not, that is told.
+bool Document::replace_names(const XmlNode &node) {
+    const size_t before = names_without_value_;
     node.edit_attributes([&](const std::string &text) { return replaced(node, text); });
+    return names_without_value_ == before;
+}
+
+void Document::tell_no_value(const XmlNode &node, const std::string &name) {
+    std::vector<std::string> known;
+    if (names_without_value_++ == 0) // the nearest name is looked for once, as there may be many
+        for (const auto &[other, value] : values_)
+            known.push_back(other);
+    context_.mistake(node, name.empty() ? "a '$' without a name; '\\$' stands for a dollar sign"
+                                        : no_value_text(name, known));
 }
 
 // The text with values in the place of names: the longest that has one, so that $ab may be $a followed by b. "\$" is a
@@ -202,16 +213,7 @@ std::string Document::replaced(const XmlNode &node, const std::string &text) {
             i += 1 + length;
             continue;
         }
-        if (name.empty()) {
-            context_.mistake(node, "a '$' without a name; '\\$' stands for a dollar sign");
-        } else {
-            std::vector<std::string> known;
-            for (const auto &[other, its_value] : values_)
-                if (!lacks_some_value_) // the names are compared once, as there may be many
-                    known.push_back(other);
-            context_.mistake(node, no_value_text(name, known));
-        }
-        lacks_some_value_ = true;
+        tell_no_value(node, name);
         i += 1 + name.size();
     }
     return result;
@@ -249,24 +251,24 @@ Object &Document::add_object(File &file, const XmlNode &node, const std::string 
 
 void Document::read_children(File &file, const XmlNode &node, Object &object) {
     for (const XmlNode &child : node.children(context_.handler()))
-        context_.attempt(child, [&] {
-            replace_names(child);
-            read_child(file, child, object);
-        });
+        context_.attempt(child, [&] { read_child(file, child, object); });
 }
 
 void Document::read_child(File &file, const XmlNode &node, Object &parent) {
     const std::string tag = node.tag();
+    const bool is_known = replace_names(node);
     if (is_object(node)) {
         const std::string name = node.attribute("name");
         Object &child = add_object(file, node, name);
         parent.properties_.push_back({node, child.name_, &child});
     } else if (contains(property_tags, tag)) {
-        read_property(file, node, parent);
+        read_property(file, node, parent, is_known);
     } else if (contains(other_tags, tag)) {
         node.require_empty();
         if (tag == "default")
             read_default(node);
+        else if (!is_known)
+            return;
         else if (tag == "include")
             read_include(file, node, parent);
         else if (tag == "path")
@@ -292,8 +294,11 @@ Object::Value Document::read_value(const XmlNode &node) {
     };
     if (tag == "transform") {
         require({"name"});
+        bool is_known = true;
         for (const XmlNode &operation : node.children(context_.handler()))
-            replace_names(operation);
+            is_known = replace_names(operation) && is_known;
+        if (!is_known)
+            throw NoObject{};
         return std::make_unique<Transform>(parse_transform(node, context_));
     }
     const bool has_parts = (tag == "point" || tag == "vector") && !node.has_attribute("value");
@@ -320,12 +325,13 @@ Object::Value Document::read_value(const XmlNode &node) {
     return text;
 }
 
-void Document::read_property(File &file, const XmlNode &node, Object &parent) {
+void Document::read_property(File &file, const XmlNode &node, Object &parent, bool is_known) {
     const std::string name = node.attribute("name");
     Object::Value value;
-    context_.attempt(node, [&] {
-        value = with_place(node, fmt::format("property '{}': ", name), [&] { return read_value(node); });
-    });
+    if (is_known)
+        context_.attempt(node, [&] {
+            value = with_place(node, fmt::format("property '{}': ", name), [&] { return read_value(node); });
+        });
     if (node.has_attribute("name")) // else that is told
         parent.properties_.push_back({node, file.is_old ? snake_case(name) : name, std::move(value)});
 }
@@ -444,18 +450,21 @@ void Document::upgrade(Object &object) {
 }
 
 // Names of properties and children that stand for one are there once.
-void Document::check_repeated(const Object &object) const {
-    std::vector<const Object::Property *> named;
-    for (const Object::Property &property : object.properties_)
+void Document::check_repeated(Object &object) const {
+    std::vector<Object::Property *> named;
+    for (Object::Property &property : object.properties_)
         if (!property.name.empty())
             named.push_back(&property);
     std::ranges::stable_sort(named, {}, &Object::Property::name);
-    for (size_t i = 1, first = 0; i < named.size(); i++)
-        if (named[i]->name != named[first]->name)
+    for (size_t i = 1, first = 0; i < named.size(); i++) {
+        if (named[i]->name != named[first]->name) {
             first = i;
-        else
-            context_.mistake(named[i]->node, fmt::format("property '{}' is repeated; it stands first at {}",
-                                                         named[i]->name, named[first]->node.place().text()));
+            continue;
+        }
+        context_.mistake(named[i]->node, fmt::format("property '{}' is repeated; it stands first at {}", named[i]->name,
+                                                     named[first]->node.place().text()));
+        named[i]->asked = true; // finish() says no more of it
+    }
 }
 
 void Document::resolve_references() {

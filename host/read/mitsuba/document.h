@@ -41,19 +41,20 @@ private:
     void read_children(File &file, const XmlNode &node, Object &object);
     void read_child(File &file, const XmlNode &node, Object &parent);
     Object::Value read_value(const XmlNode &node);
-    void read_property(File &file, const XmlNode &node, Object &parent);
+    void read_property(File &file, const XmlNode &node, Object &parent, bool is_known);
     void read_include(File &file, const XmlNode &node, Object &parent);
     void read_default(const XmlNode &node);
     void read_path(File &file, const XmlNode &node, const Object &parent);
     void read_alias(const XmlNode &node);
     void read_reference(File &file, const XmlNode &node, Object &parent);
     static void upgrade(Object &object);
-    void check_repeated(const Object &object) const;
+    void check_repeated(Object &object) const;
     bool add_id(const XmlNode &node, const std::string &id, Object &object);
     void resolve_references();
     void check_graph(Object &root);
     void check_definitions(const Definitions &given, const SourcePlace &place) const;
-    void replace_names(const XmlNode &node);
+    bool replace_names(const XmlNode &node);
+    void tell_no_value(const XmlNode &node, const std::string &name);
     std::string replaced(const XmlNode &node, const std::string &text);
 
     ParseContext context_;
@@ -66,7 +67,7 @@ private:
     Definitions values_, used_;  // of $name
     size_t longest_name_ = 0;    // of them
     size_t bytes_of_values_ = 0; // that stand for names
-    bool lacks_some_value_ = false;
+    size_t names_without_value_ = 0;
     size_t count_of_includes_ = 0;
 };
 

@@ -117,7 +117,7 @@ constexpr CieRow cie_rows[] = {{0.0001299, 3.917e-06, 0.0006061, 46.6383},
                                {1.776509e-06, 6.4153e-07, 0, 58.8765},
                                {1.251141e-06, 4.5181e-07, 0, 60.3125}};
 
-// By which Mitsuba divides D65; the mean of the table above, weighed by y, is 98.892.
+// Mitsuba divides D65 by this number; the mean of the table, weighed by y, is 98.892.
 constexpr double d65_scale = 98.99741751876255;
 
 CieRow cie_at(double wavelength) {
@@ -128,7 +128,7 @@ CieRow cie_at(double wavelength) {
     return {std::lerp(a.x, b.x, t), std::lerp(a.y, b.y, t), std::lerp(a.z, b.z, t), std::lerp(a.d65, b.d65, t)};
 }
 
-// Mitsuba sums over so many wavelengths. A curve that ends in the visible range has the same error by it.
+// Mitsuba sums over so many wavelengths. The same sum has the same error where a curve ends in the visible range.
 constexpr int count_of_samples = 1000;
 
 double wavelength_of(int sample) { return shortest + sample * (longest - shortest) / (count_of_samples - 1); }
@@ -155,7 +155,7 @@ Color from_xyz(double x, double y, double z) {
             0.055648 * x - 0.204043 * y + 1.057311 * z};
 }
 
-// The colour of value(i, wavelength) over the samples.
+// The colour of the spectrum value(row, wavelength).
 template <class Value> Color sum(Value value) {
     double x = 0, y = 0, z = 0;
     for (int i = 0; i < count_of_samples; i++) {
@@ -211,12 +211,14 @@ Color parse_rgb(std::string_view text, bool encoded) {
     const std::vector<std::string_view> pieces = split(text);
     const bool is_hex = pieces.size() == 1 && pieces[0].starts_with('#');
     Color color{};
-    if (is_hex)
+    if (is_hex) {
         color = parse_hex(pieces[0]);
-    else if (pieces.size() == 1)
+    } else if (pieces.size() == 1) {
         color.fill(parse_number(pieces[0]));
-    else if (const Vec3 triple = parse_triple(text); true)
+    } else {
+        const Vec3 triple = parse_triple(text);
         color = {triple.x, triple.y, triple.z};
+    }
     if (is_hex || encoded)
         std::ranges::transform(color, color.begin(), srgb_decode);
     return color;
