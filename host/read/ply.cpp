@@ -471,6 +471,14 @@ void PlyReader::add_vertex(const std::array<double, field_count> &fields) {
 template <class Numbers> void PlyReader::read_faces(Numbers &numbers) {
     if (face_->count == 0)
         return;
+    const size_t least =
+        Numbers::least_bytes(*corner_list_->length_type) + 3 * Numbers::least_bytes(corner_list_->type);
+    const size_t count = size_t(std::min<uint64_t>(face_->count, (text_.size() - at_.next) / least + 1)); // triangles
+    check_memory(double(count) * double(sizeof mesh_.triangles[0] + has_uvs_ * sizeof mesh_.uv_corners[0]),
+                 fmt::format("{}: {} triangles", file_, count));
+    mesh_.triangles.reserve(count);
+    if (has_uvs_)
+        mesh_.uv_corners.reserve(count);
     read_elements(*face_, numbers, [&] {
         for (const PlyProperty &property : face_->properties) {
             if (&property != corner_list_) {
