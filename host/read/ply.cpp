@@ -38,7 +38,7 @@ float as_float(double number) { return std::abs(number) <= std::numeric_limits<f
 struct BodyPosition {
     size_t next;   // the first byte that is not read
     size_t start;  // of the present element or, in text, of its line
-    int lines = 0; // before `start`, in text
+    int lines = 0; // of the file up to that of `start`, in text
 };
 
 // Numbers in text: an element a line. begin and end enclose an element. Errors are given to `fail` with an offset.
