@@ -137,16 +137,22 @@ bool has_long_version(std::string_view tag) {
     return std::count(value.begin(), value.end(), '.') == 2;
 }
 
-// Nori's forks have some of Mitsuba's tags, and some scenes of Nori a version: both together, with a version as
-// Mitsuba writes it, are Mitsuba's.
+// Nori's forks have some of Mitsuba's tags, and some scenes of Nori a version. A version as Mitsuba 3 writes it is
+// Mitsuba's, unless there is a tag that Mitsuba does not have; a shorter one is, with tags that Nori does not have.
 bool is_mitsuba(std::string_view root) {
-    if (!has_long_version(root.substr(0, root.find('>'))))
+    const std::string_view tag = root.substr(0, root.find('>'));
+    const auto has = [&](std::initializer_list<std::string_view> tags) {
+        return std::ranges::any_of(tags, [&](std::string_view each) { return contains(root, each); });
+    };
+    if (!contains(tag, "version") || has({"<camera", "<mesh"}))
         return false;
-    for (std::string_view own : {"<shape", "<film", "<sensor", "<default", "<include", "<rgb", "<spectrum", "to_world"})
-        if (contains(root, own))
-            return true;
-    return false;
+    return has_long_version(tag) || has({"<film", "<sensor", "<include", "<rgb", "<spectrum", "to_world"});
 }
+
+// The objects that may be the root of a file that a scene of Mitsuba includes.
+constexpr std::string_view mitsuba_roots[] = {"bsdf",    "shape",   "emitter",   "sensor", "film",
+                                              "sampler", "rfilter", "texture",   "medium", "spectrum",
+                                              "volume",  "phase",   "integrator"};
 
 FileKindRow kind_of_xml(std::string_view text) {
     const std::string_view root = xml_root(text);
@@ -157,7 +163,9 @@ FileKindRow kind_of_xml(std::string_view text) {
     const auto name_end =
         std::find_if(root.begin() + 1, root.end(), [](char c) { return is_blank(c) || c == '>' || c == '/'; });
     const std::string_view tag(root.data() + 1, size_t(name_end - root.begin()) - 1);
-    if (tag == "scene" && is_mitsuba(root))
+    const std::string_view root_tag = root.substr(0, root.find('>'));
+    if (tag == "scene" ? is_mitsuba(root)
+                       : std::ranges::find(mitsuba_roots, tag) != std::end(mitsuba_roots) && has_long_version(root_tag))
         return {FileKind::mitsuba_scene, "a scene of Mitsuba",
                 "there is no converter: Opal reads Nori's scenes, scenes/ has some to start from"};
     if (tag == "scene" || tag == "test")
@@ -268,11 +276,14 @@ std::string wrong_kind_text(const std::filesystem::path &file, const FileKindRow
 }
 
 std::string read_text_file(const std::filesystem::path &file, FileKind wanted, FileHashes *hashes) {
-    std::string text = read_file(file, wanted == FileKind::scene ? Pipes::read : Pipes::refused);
+    const bool is_scene = wanted == FileKind::scene || wanted == FileKind::mitsuba_scene;
+    std::string text = read_file(file, is_scene ? Pipes::read : Pipes::refused);
     if (hashes)
         hashes->add(text);
     const FileKindRow found = kind_of(text);
-    if (found.kind != FileKind::unknown && found.kind != wanted)
+    // A reader of Mitsuba's scenes was chosen for the file, or for one that includes it.
+    const bool fits = found.kind == wanted || (wanted == FileKind::mitsuba_scene && found.kind == FileKind::scene);
+    if (found.kind != FileKind::unknown && !fits)
         throw Error(wrong_kind_text(file, found, wanted));
     if (text.starts_with("\xef\xbb\xbf"))
         text.erase(0, 3);
