@@ -38,7 +38,7 @@ float as_float(double number) { return std::abs(number) <= std::numeric_limits<f
 struct BodyPosition {
     size_t next;   // the first byte that is not read
     size_t start;  // of the present element or, in text, of its line
-    int lines = 0; // before `start`, in text
+    int lines = 0; // of the file up to that of `start`, in text
 };
 
 // Numbers in text: an element a line. begin and end enclose an element. Errors are given to `fail` with an offset.
@@ -471,6 +471,14 @@ void PlyReader::add_vertex(const std::array<double, field_count> &fields) {
 template <class Numbers> void PlyReader::read_faces(Numbers &numbers) {
     if (face_->count == 0)
         return;
+    const size_t least =
+        Numbers::least_bytes(*corner_list_->length_type) + 3 * Numbers::least_bytes(corner_list_->type);
+    const size_t count = size_t(std::min<uint64_t>(face_->count, (text_.size() - at_.next) / least + 1)); // triangles
+    check_memory(double(count) * double(sizeof mesh_.triangles[0] + has_uvs_ * sizeof mesh_.uv_corners[0]),
+                 fmt::format("{}: {} triangles", file_, count));
+    mesh_.triangles.reserve(count);
+    if (has_uvs_)
+        mesh_.uv_corners.reserve(count);
     read_elements(*face_, numbers, [&] {
         for (const PlyProperty &property : face_->properties) {
             if (&property != corner_list_) {

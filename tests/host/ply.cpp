@@ -71,6 +71,8 @@ struct Writer {
 
 struct PlyFixture {
     test::ScratchFolder scratch;
+    PlyFixture() { set_quiet(true); } // notes of hundreds of files
+    ~PlyFixture() { set_quiet(false); }
     std::string file() const { return (scratch / "a.ply").string(); }
     TriangleMesh read(const std::string &text, const Transform &to_world = {}) const {
         return read_ply(scratch.write("a.ply", text), to_world);
