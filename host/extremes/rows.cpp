@@ -397,7 +397,7 @@ const std::vector<StressRow> &stress_rows() {
          .picture = light_of_radiance},
         {.name = "spot",
          .stretched = "angle at which a spot's light ends, degrees",
-         .values = joined({180, 90}, reversed(decades(-4, 1))),
+         .values = joined({180, 90}, reversed(decades(-3, 1))),
          .start = 90,
          .promised_from = 1e-2,
          .promised_to = 180,
