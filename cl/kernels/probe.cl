@@ -6,6 +6,7 @@
 // all launches have one: work-items past the end return.
 #include "bsdfs/dispatch.cl"
 #include "bsdfs/interface.cl"
+#include "cameras/dispatch.cl"
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "core/rng.cl"
@@ -91,8 +92,9 @@ kernel void bsdf_draw(SCENE_PARAMETERS, uint mesh, float wi_x, float wi_y, float
     if (base >= stride) return;
     Scene scene = SCENE_OF_PARAMETERS;
     Surface surface = flat_surface(&scene, mesh, wi_x, wi_y, wi_z);
-    v2 u = get_v2(given, 0, stride, base);
-    BsdfSample s = bsdf_sample(&scene, &surface, u, get(given, 2, stride, base), ALL_LANES);
+    BsdfNumbers numbers = {get_v2(given, 0, stride, base), get(given, 2, stride, base), (real)(0)};
+    if (OPAL_HAS_bsdf_mask) numbers.met = get(given, 3, stride, base);
+    BsdfSample s = bsdf_sample(&scene, &surface, numbers, ALL_LANES);
     put_v3(out, BSDF_WO_X, stride, base, to_world(surface.frame, s.wo));
     put_v3(out, BSDF_WEIGHT_R, stride, base, s.weight);
     put(out, BSDF_PDF, stride, base, s.pdf);
@@ -107,7 +109,8 @@ kernel void bsdf_value(SCENE_PARAMETERS, uint mesh, float wi_x, float wi_y, floa
     Scene scene = SCENE_OF_PARAMETERS;
     Surface surface = flat_surface(&scene, mesh, wi_x, wi_y, wi_z);
     v3 wo = to_local(surface.frame, get_v3(points, WARP_X, stride, base));
-    BsdfResponse r = bsdf_respond(&scene, &surface, wo, ALL_LANES, v2_of((real)(0), (real)(0)), (real)(0), NO_LANES);
+    BsdfNumbers numbers = {v2_of((real)(0), (real)(0)), (real)(0), (real)(0)};
+    BsdfResponse r = bsdf_respond(&scene, &surface, wo, ALL_LANES, numbers, NO_LANES);
     put_v3(out, EVAL_R, stride, base, r.f);
     put(out, EVAL_PDF, stride, base, r.pdf);
 }
@@ -136,8 +139,22 @@ kernel void light_draw(SCENE_PARAMETERS, global const float *points, global cons
     put(out, LIGHT_ACTIVE, stride, base, s.active ? (real)(1) : (real)(0));
 }
 
-// Closest and any hit of rays; the surface; the light that a ray of unit direction meets: its radiance, and the density, solid angle
-// measure, with which light sampling at the ray's origin finds that direction.
+// The camera's rays through points of the film in [0, 1]^2, by pairs of numbers for the lens.
+kernel void camera_rays(SCENE_PARAMETERS, global const float *given, global float *out, uint first, uint stride) {
+    uint base = base_of_item(first);
+    if (base >= stride) return;
+    Scene scene = SCENE_OF_PARAMETERS;
+    v2 film = get_v2(given, FILM_X, stride, base);
+    v2 pixels = v2_of(film.x * (real1)settings->width, film.y * (real1)settings->height);
+    Ray ray = camera_ray(&scene, (uints)(0), (uints)(0), pixels, get_v2(given, FILM_LENS, stride, base));
+    put_v3(out, RAY_O_X, stride, base, ray.o);
+    put_v3(out, RAY_D_X, stride, base, ray.d);
+    put(out, RAY_TMIN, stride, base, ray.tmin);
+    put(out, RAY_TMAX, stride, base, ray.tmax);
+}
+
+// Closest and any hit of rays; the surface; the light that a ray of unit direction meets: its radiance, and the
+// density, solid angle measure, with which light sampling at the ray's origin finds that direction.
 kernel void trace(SCENE_PARAMETERS, global const float *rays, global float *out, uint first, uint stride) {
     uint base = base_of_item(first);
     if (base >= stride) return;

@@ -82,6 +82,7 @@ static Surface surface_of_sphere(const Scene *scene, Ray ray, Hit hit, mask acti
     s.t = hit.t;
     s.u = hit.u;
     s.v = hit.v;
+    s.uv = v2_of((real)(0), (real)(0)); // no texture is on a sphere yet
     s.p = v3_mad(outward, radius, center);
     finish_surface(scene, ray, s.normal, mesh, &s);
     return s;

@@ -67,17 +67,10 @@ struct WarpCase {
     int warp;
     float parameter;
 };
-const WarpCase warp_cases[] = {{WARP_tent, 0},
-                               {WARP_uniform_disk, 0},
-                               {WARP_uniform_sphere, 0},
-                               {WARP_uniform_hemisphere, 0},
-                               {WARP_cosine_hemisphere, 0},
-                               {WARP_beckmann, 1},
-                               {WARP_beckmann, 1e-2f},
-                               {WARP_beckmann, 1e-6f},
-                               {WARP_phong_lobe, 0},
-                               {WARP_phong_lobe, 100},
-                               {WARP_phong_lobe, 1e8f}};
+const WarpCase warp_cases[] = {{WARP_tent, 0},           {WARP_uniform_disk, 0},       {WARP_concentric_disk, 0},
+                               {WARP_uniform_sphere, 0}, {WARP_uniform_hemisphere, 0}, {WARP_cosine_hemisphere, 0},
+                               {WARP_beckmann, 1},       {WARP_beckmann, 1e-2f},       {WARP_beckmann, 1e-6f},
+                               {WARP_phong_lobe, 0},     {WARP_phong_lobe, 100},       {WARP_phong_lobe, 1e8f}};
 
 // A scene with every BSDF, a mesh light and a parallelogram light.
 FlatScene scene_of_everything() {

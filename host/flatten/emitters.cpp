@@ -4,6 +4,8 @@
 #include "bvh/binary_tree.h"
 #include "flatten/distribution.h"
 #include "flatten/emitter_kinds.h"
+#include "flatten/store.h"
+#include "flatten/textures.h"
 
 #include <fmt/format.h>
 
@@ -47,8 +49,9 @@ uint kind_of(const Shape &shape) {
 class EmitterGatherer {
 public:
     EmitterGatherer(const SceneDescription &description, const Flattening &flattening, double radius,
-                    const TriangleSoup &soup, FlatScene &scene)
-        : description_(description), flattening_(flattening), radius_(radius), soup_(soup), scene_(scene) {}
+                    const TriangleSoup &soup, TextureGatherer &textures, FlatScene &scene)
+        : description_(description), flattening_(flattening), radius_(radius), soup_(soup), textures_(textures),
+          scene_(scene) {}
 
     void gather() {
         uint end = 0; // triangles are in the order of their meshes
@@ -73,6 +76,7 @@ private:
     const Flattening &flattening_;
     const double radius_;
     const TriangleSoup &soup_;
+    TextureGatherer &textures_;
     FlatScene &scene_;
     std::vector<uint> slots_;
     std::vector<double> powers_; // of each emitter, W, times the square of the flattening's scale
@@ -112,7 +116,19 @@ private:
     if (const auto *own = std::get_if<emitter_##name>(&light.parameters))                                              \
         record.u.of_##name = flattened(*own, flattening_);
         OPAL_SCENE_EMITTERS(OPAL_STORE_EMITTER)
-        add(record, power_of(light, radius_) * flattening_.scale * flattening_.scale);
+        double power = power_of(light, radius_);
+        if (light.texture) {
+            add_texture(*light.texture, std::get<emitter_spot>(light.parameters), record.u.of_spot);
+            power *= mean_luminance(light.texture->texture);
+        }
+        add(record, power * flattening_.scale * flattening_.scale);
+    }
+
+    void add_texture(const LightTexture &own, const emitter_spot &light, emitter_spot_record &record) {
+        const double factor = 1 / (2 * std::tan(light.cutoff_angle * (pi / 180)));
+        record.texture = textures_.add(own.texture);
+        store(own.x * factor, record.across[0]);
+        store(own.y * factor, record.across[1]);
     }
 
     void fill_emitter_choice() {
@@ -132,9 +148,9 @@ private:
 } // namespace
 
 void gather_emitters(const SceneDescription &description, const Flattening &flattening, double radius,
-                     const TriangleSoup &soup, FlatScene &scene) {
+                     const TriangleSoup &soup, TextureGatherer &textures, FlatScene &scene) {
     scene.settings.environment = OPAL_NONE;
-    EmitterGatherer(description, flattening, radius, soup, scene).gather();
+    EmitterGatherer(description, flattening, radius, soup, textures, scene).gather();
     scene.settings.emitter_count = uint(scene.emitters.size());
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "flatten/geometry.h"
+#include "flatten/textures.h"
 
 namespace opal {
 
@@ -10,6 +11,6 @@ namespace opal {
 // flattened units, those of the rounded triangles, summed in double. Meshes of triangles may be empty by now: radius is
 // that of the scene's bounding sphere, in world units. Error: a second environment.
 void gather_emitters(const SceneDescription &description, const Flattening &flattening, double radius,
-                     const TriangleSoup &soup, FlatScene &scene);
+                     const TriangleSoup &soup, TextureGatherer &textures, FlatScene &scene);
 
 } // namespace opal

@@ -1,7 +1,6 @@
 #include "flatten/features.h"
 
 #include "flatten/distribution.h"
-#include "textures/list.h"
 
 #include <fmt/format.h>
 
@@ -25,8 +24,8 @@ std::string plural(std::size_t count, const char *one, const char *many) {
 constexpr std::size_t large_tree_bytes = 4 << 20;
 
 // Paths up to this length are finished in the launch that starts them: roulette's own longest ones, in a scene that
-// loses no light, have 1 / (1 - ROULETTE_MOST) = 10 000 segments on the average (integrators/steps.cl).
-constexpr double roulette_most = 0.9999, longest_path_of_a_launch = 2 / (1 - roulette_most);
+// loses no light, have 1 / (1 - 0.9999) = 10 000 segments on the average by default (--rr-max).
+constexpr double longest_path_of_a_launch = 2 / (1 - 0.9999);
 
 // The segments of a path that loses no light, on the average.
 double longest_path(const Strategy &strategy) {
@@ -35,7 +34,8 @@ double longest_path(const Strategy &strategy) {
         return 1;
     if (strategy[AXIS_rr] == CHOICE_rr_off)
         return limit;
-    const double survival = strategy[AXIS_rr] == CHOICE_rr_fixed ? drawn_probability(strategy.rr_prob) : roulette_most;
+    const double survival =
+        strategy[AXIS_rr] == CHOICE_rr_fixed ? drawn_probability(strategy.rr_prob) : strategy.rr_max;
     return std::min(limit, strategy.rr_depth + 1 / (1 - survival));
 }
 
@@ -120,6 +120,19 @@ public:
         const auto smooth = [](const Triangle &triangle) { return triangle.normal[0] != OPAL_NONE; };
         return counted(std::size_t(std::count_if(scene.triangles.begin(), scene.triangles.end(), smooth)),
                        scene.triangles.size(), "triangle", "triangles");
+    }
+
+    Decision uv() const {
+        const bool textured = is_textured(description);
+        return {textured, textured ? "a material has a texture" : "no material has a texture"};
+    }
+
+    Decision light_textures() const {
+        const auto has = [](const EmitterRecord &emitter) {
+            return emitter.kind == EMITTER_spot && emitter.u.of_spot.texture != OPAL_UNTEXTURED;
+        };
+        return counted(std::size_t(std::ranges::count_if(scene.emitters, has)), scene.emitters.size(), "emitter",
+                       "emitters");
     }
 
     Decision hidden_emitters() const {
@@ -210,10 +223,11 @@ int find_emitter_choice(const SceneDescription &description, const FlatScene &sc
     return CHOICE_emitter_choice_uniform;
 }
 
-// The parameters of each kind of BSDF that have a texture on some mesh; all where it is decided at run time.
+// The parameters of each kind of BSDF that have a texture on some mesh; all where it is decided at run time and the
+// scene has textures at all.
 std::array<uint, BSDF_COUNT> find_textured(const FlatScene &scene, bool specialise) {
     std::array<uint, BSDF_COUNT> textured{};
-    if (TEXTURE_COUNT > 0 && !specialise)
+    if (!specialise && !scene.textures.empty())
         textured.fill(~0u);
     for (const MeshRecord &mesh : scene.meshes)
         visit_bsdfs(scene, mesh.bsdf, [&](uint at) {
@@ -233,6 +247,12 @@ bool general_has(unsigned feature, int lanes) {
     if (feature == FEATURE_face_list)
         return lanes >= FACE_LIST_LANES;
     return feature != FEATURE_large_tree;
+}
+
+// Features whose scenes have a general kernel of their own, which does not ask at run time.
+bool has_general_kernel(unsigned feature) {
+    return feature == FEATURE_endless_paths || feature == FEATURE_hidden_emitters || feature == FEATURE_uv ||
+           feature == FEATURE_light_textures;
 }
 
 // Features of a second program for all scenes, which serves scenes that have one of these. Scenes of Nori's own kinds
@@ -281,7 +301,7 @@ Features find_features(const SceneDescription &description, const FlatScene &sce
         second_general = second_general || (is_second_general(i) && decisions[i].on);
     for (unsigned i = 0; i < FEATURE_COUNT; i++)
         features.list[i] =
-            specialise || i == FEATURE_endless_paths // a general kernel of its own
+            specialise || has_general_kernel(i)
                 ? Feature{decisions[i].on, decisions[i].reason}
                 : Feature{general_has(i, lanes) && (second_general || !is_second_general(i)), "the general kernel"};
     for (int axis = 0; axis < AXIS_COUNT; axis++) {

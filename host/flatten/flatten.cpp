@@ -8,6 +8,7 @@
 #include "flatten/features.h"
 #include "flatten/geometry.h"
 #include "flatten/store.h"
+#include "flatten/textures.h"
 #include "scene/filter.h"
 
 #include <fmt/format.h>
@@ -62,19 +63,24 @@ void fill_film(const Camera &camera, Settings &settings) {
 }
 
 void fill_strategy(const SceneDescription &description, const Flattening &flattening, Settings &settings) {
+    const Strategy &strategy = description.strategy;
     settings.spp = description.spp;
-    settings.max_depth = description.strategy.max_depth;
-    settings.rr_depth = description.strategy.rr_depth;
-    settings.rr_prob = float(drawn_probability(description.strategy.rr_prob));
-    settings.rr_max = float(drawn_probability(description.strategy.rr_max));
-    settings.emitter_samples = description.strategy.emitter_samples;
-    settings.bsdf_samples = description.strategy.bsdf_samples;
+    settings.max_depth = strategy.max_depth;
+    settings.rr_depth = strategy.rr_depth;
+    settings.rr_prob = float(drawn_probability(strategy.rr_prob));
+    // Rounded as the device's numbers are, before it is put on their grid.
+    const bool in_double = strategy.math == MathMode::double_precision;
+    settings.rr_max = float(drawn_probability(in_double ? strategy.rr_max : double(float(strategy.rr_max))));
+    const bool counts = integrator_of(strategy).has(OPAL_ONE_SAMPLE_MIS); // the others take one sample of each kind
+    settings.emitter_samples = counts ? strategy.emitter_samples : 1;
+    settings.bsdf_samples = counts ? strategy.bsdf_samples : 1;
+    settings.lights_reflect = description.lights_reflect;
     settings.normals_signed = description.normals_signed;
     settings.visibility_length = float(description.visibility_length * flattening.scale);
     store((description.simple_light.position - flattening.center) * flattening.scale, settings.light_position);
     for (int i = 0; i < 3; i++)
         settings.light_energy[i] = float(description.simple_light.energy[i] * flattening.scale * flattening.scale);
-    std::copy(description.strategy.choices.begin(), description.strategy.choices.end(), settings.choices);
+    std::copy(strategy.choices.begin(), strategy.choices.end(), settings.choices);
 }
 
 // The words of a material after --hemisphere, so that the device need not read the option.
@@ -88,15 +94,22 @@ std::vector<uint> words_with_hemisphere(const Bsdf &bsdf, int hemisphere) {
 
 class BsdfGatherer {
 public:
-    BsdfGatherer(int hemisphere, LargeVector<uint> &table) : hemisphere_(hemisphere), table_(table) {}
+    BsdfGatherer(int hemisphere, TextureGatherer &textures, LargeVector<uint> &table)
+        : hemisphere_(hemisphere), textures_(textures), table_(table) {}
 
-    // Returns the first word of the record. BSDFs come after those that they lead to.
+    // Returns the first word of the record. BSDFs come after those that they lead to. A twosided with one BSDF has it
+    // on both sides.
     uint add(const Bsdf &bsdf) {
         std::vector<uint> words = words_with_hemisphere(bsdf, hemisphere_);
         auto child = bsdf.children.begin();
         for (const Parameter &parameter : bsdf_parameters(bsdf.kind()))
-            if (parameter.type == ParameterType::BSDF)
-                words[parameter.word] = add(*child++);
+            if (parameter.type == ParameterType::BSDF) {
+                words[parameter.word] = add(*child);
+                if (child + 1 != bsdf.children.end())
+                    ++child;
+            }
+        for (const auto &[word, texture] : bsdf.textures)
+            words[word] = textures_.add(texture);
         const auto [found, is_new] = known_.try_emplace(words, uint(table_.size()));
         if (is_new)
             table_.insert(table_.end(), words.begin(), words.end());
@@ -105,12 +118,13 @@ public:
 
 private:
     int hemisphere_;
+    TextureGatherer &textures_;
     LargeVector<uint> &table_;
     std::map<std::vector<uint>, uint> known_; // first word of each record
 };
 
-void gather_bsdfs(const SceneDescription &description, FlatScene &scene) {
-    BsdfGatherer gatherer(description.strategy[AXIS_hemisphere], scene.bsdfs);
+void gather_bsdfs(const SceneDescription &description, TextureGatherer &textures, FlatScene &scene) {
+    BsdfGatherer gatherer(description.strategy[AXIS_hemisphere], textures, scene.bsdfs);
     for (const Mesh &mesh : description.meshes)
         scene.meshes.push_back({gatherer.add(mesh.bsdf), OPAL_NONE});
         // Lanes that are not meant read records of other kinds as far as the longest one reaches.
@@ -149,7 +163,7 @@ void build_acceleration(TriangleSoup &soup, const std::optional<std::vector<Poin
     const std::vector<uint> ids = choose_face_list(soup);
     // Triangles are paired at every width: pairing renumbers corners, and sampled points of lights depend on their
     // order.
-    std::vector<Face> faces = pair_up(ids, soup, scene.triangles);
+    std::vector<Face> faces = pair_up(ids, soup, scene);
     if (!with_face_list)
         faces.clear();
     if (always_tree || faces.empty() || ids.size() < soup.corners.size() || !soup.others.empty())
@@ -177,11 +191,12 @@ FlatScene flatten(const SceneDescription &description, int lanes, bool with_face
     scene.crop = description.camera.window();
     fill_film(description.camera, scene.settings);
     fill_strategy(description, flattening, scene.settings);
-    gather_bsdfs(description, scene);
+    TextureGatherer textures(scene.textures, scene.texels);
+    gather_bsdfs(description, textures, scene);
     TriangleSoup soup = gather_primitives(description, flattening, scene, on_gathered);
     build_acceleration(soup, light_points(description, flattening, soup, scene.triangles),
                        with_face_list && lanes >= FACE_LIST_LANES, description.strategy.is_general(), scene);
-    gather_emitters(description, flattening, extent.radius(), soup, scene);
+    gather_emitters(description, flattening, extent.radius(), soup, textures, scene);
     scene.features = find_features(description, scene, lanes);
     return scene;
 }

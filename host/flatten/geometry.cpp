@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -25,7 +26,9 @@ bool has_normal(const Point3f &a, const Point3f &b, const Point3f &c) {
 
 class PrimitiveGatherer {
 public:
-    PrimitiveGatherer(const Flattening &flattening, FlatScene &scene) : flattening_(flattening), scene_(scene) {}
+    // with_uv: does the scene have textures?
+    PrimitiveGatherer(const Flattening &flattening, bool with_uv, FlatScene &scene)
+        : flattening_(flattening), with_uv_(with_uv), scene_(scene) {}
 
     void add(const Mesh &mesh, uint index) {
         mesh_ = index;
@@ -38,6 +41,7 @@ public:
 
 private:
     const Flattening &flattening_;
+    const bool with_uv_;
     FlatScene &scene_;
     uint mesh_ = 0; // index of the current one
 
@@ -53,21 +57,35 @@ private:
         for (Vec3 normal : mesh.normals)
             for (double component : {normal.x, normal.y, normal.z})
                 scene_.normals.push_back(float(component));
-        for (const auto &triangle : mesh.triangles) {
+        for (size_t i = 0; i < mesh.triangles.size(); i++) {
+            const auto &triangle = mesh.triangles[i];
             // Interpolation needs three normals: a triangle that lacks one is flat.
             const bool smooth =
                 triangle[0].normal != OPAL_NONE && triangle[1].normal != OPAL_NONE && triangle[2].normal != OPAL_NONE;
             std::array<uint, 3> normals{OPAL_NONE, OPAL_NONE, OPAL_NONE};
-            for (int i = 0; i < 3 && smooth; i++)
-                normals[i] = first_normal + triangle[i].normal;
-            add_triangle(first, {triangle[0].position, triangle[1].position, triangle[2].position}, normals);
+            for (int k = 0; k < 3 && smooth; k++)
+                normals[k] = first_normal + triangle[k].normal;
+            add_triangle(first, {triangle[0].position, triangle[1].position, triangle[2].position}, normals,
+                         uv_of(mesh, i));
         }
     }
 
     void add_primitives(const Parallelogram &shape) {
         const uint first = add_vertices(shape.corners());
-        add_triangle(first, {0, 1, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE});
-        add_triangle(first, {1, 3, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE});
+        add_triangle(first, {0, 1, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE}, {{{0, 0}, {1, 0}, {0, 1}}});
+        add_triangle(first, {1, 3, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE}, {{{1, 0}, {1, 1}, {0, 1}}});
+    }
+
+    // A triangle without texture coordinates has its barycentric ones.
+    static TriangleUv uv_of(const TriangleMesh &mesh, size_t triangle) {
+        TriangleUv uv = {{{0, 0}, {1, 0}, {0, 1}}};
+        if (mesh.uv_corners.empty())
+            return uv;
+        const std::array<unsigned, 3> &corners = mesh.uv_corners[triangle];
+        if (std::ranges::find(corners, OPAL_NONE) == corners.end())
+            for (size_t i = 0; i < 3; i++)
+                std::ranges::copy(mesh.uvs[corners[i]], uv.corner[i]);
+        return uv;
     }
 
     void add_primitives(const Sphere &sphere) {
@@ -102,7 +120,7 @@ private:
     }
 
     // corners: counted from the vertex `first`
-    void add_triangle(uint first, std::array<uint, 3> corners, std::array<uint, 3> normals) {
+    void add_triangle(uint first, std::array<uint, 3> corners, std::array<uint, 3> normals, const TriangleUv &uv) {
         for (uint &corner : corners)
             corner += first;
         if (!has_normal(soup.vertices[corners[0]], soup.vertices[corners[1]], soup.vertices[corners[2]])) {
@@ -111,6 +129,8 @@ private:
         }
         soup.corners.push_back(corners);
         scene_.triangles.push_back({{normals[0], normals[1], normals[2]}, mesh_});
+        if (with_uv_)
+            scene_.triangle_uvs.push_back(uv);
     }
 };
 
@@ -148,7 +168,8 @@ Flattening find_flattening(const Extent &extent) {
 
 TriangleSoup gather_primitives(const SceneDescription &description, const Flattening &flattening, FlatScene &scene,
                                const std::function<void(uint)> &on_gathered) {
-    PrimitiveGatherer gatherer(flattening, scene);
+    const bool with_uv = is_textured(description);
+    PrimitiveGatherer gatherer(flattening, with_uv, scene);
     std::size_t vertices = 0, normals = 0, triangles = 0;
     for (const Mesh &mesh : description.meshes)
         if (const auto *shape = std::get_if<TriangleMesh>(&mesh.shape)) {
@@ -160,6 +181,7 @@ TriangleSoup gather_primitives(const SceneDescription &description, const Flatte
     gatherer.soup.corners.reserve(triangles);
     scene.normals.reserve(3 * normals);
     scene.triangles.reserve(triangles);
+    scene.triangle_uvs.reserve(with_uv ? triangles : 0);
     for (uint mesh = 0; mesh < description.meshes.size(); mesh++) {
         gatherer.add(description.meshes[mesh], mesh);
         on_gathered(mesh);

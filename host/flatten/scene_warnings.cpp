@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <numbers>
 
 namespace opal {
 
@@ -190,6 +192,34 @@ void check_lights(const SceneDescription &scene, const std::vector<Extent> &exte
                             : "Faces with their corners in the opposite order turn it round"));
 }
 
+// Whether the ball around a box lies outside the spot's cone.
+bool misses(const emitter_spot &spot, const Extent &extent) {
+    const Vec3 to_middle = extent.middle() - spot.position;
+    const double distance = length(to_middle), radius = extent.radius();
+    if (extent.empty() || distance <= radius)
+        return extent.empty();
+    const double cosine = dot(to_middle, spot.direction) / (distance * length(spot.direction));
+    const double angle = std::acos(std::clamp(cosine, -1.0, 1.0)) - std::asin(radius / distance);
+    return angle * (180 / std::numbers::pi) >= spot.cutoff_angle;
+}
+
+void check_spots(const SceneDescription &scene, const std::vector<Extent> &extents, std::vector<std::string> &lines) {
+    constexpr size_t most_pairs = 10'000'000; // a second at the most
+    const size_t pairs = scene.lights.size() * extents.size();
+    if (pairs == 0 || pairs > most_pairs || !integrator_of(scene.strategy).has(OPAL_ASKS_LIGHTS))
+        return;
+    size_t count = 0;
+    const Light *first = nullptr;
+    for (const Light &light : scene.lights)
+        if (const auto *spot = std::get_if<emitter_spot>(&light.parameters))
+            if (std::ranges::all_of(extents, [&](const Extent &mesh) { return misses(*spot, mesh); }) && ++count == 1)
+                first = &light;
+    if (count > 0)
+        lines.push_back(
+            fmt::format("{}: {}: no mesh lies within cutoffAngle of the axis", first->place.text(),
+                        count == 1 ? "a spot lights nothing" : fmt::format("{} spots light nothing", count)));
+}
+
 // --- coincident faces ---
 
 struct Face {
@@ -331,6 +361,7 @@ std::vector<std::string> scene_warnings(const SceneDescription &scene, size_t mo
         extents.push_back(extent_of(mesh));
     check_clip(scene, extents, lines);
     check_lights(scene, extents, lines);
+    check_spots(scene, extents, lines);
     if (const Faces faces(scene); faces.count() <= most_faces)
         check_coincident_faces(scene, faces, lines);
     return lines;

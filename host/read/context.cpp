@@ -1,11 +1,11 @@
 #include "read/context.h"
 
 #include "base/log.h"
-#include "read/nori/names.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <tuple>
 
 namespace opal {
@@ -18,8 +18,12 @@ constexpr size_t most_told = 20; // a screen's worth
 
 void Mistakes::throw_all() const {
     std::vector<Mistake> sorted = list_;
-    std::stable_sort(sorted.begin(), sorted.end(), [](const Mistake &a, const Mistake &b) {
-        return std::tie(a.at.line, a.at.column) < std::tie(b.at.line, b.at.column);
+    std::map<std::string, size_t> files; // in the order of their first mistakes
+    for (const Mistake &mistake : sorted)
+        files.emplace(mistake.at.file, files.size());
+    std::stable_sort(sorted.begin(), sorted.end(), [&](const Mistake &a, const Mistake &b) {
+        return std::tuple(files.at(a.at.file), a.at.line, a.at.column) <
+               std::tuple(files.at(b.at.file), b.at.line, b.at.column);
     });
     std::vector<std::string> lines;
     for (const Mistake &mistake : sorted)
@@ -53,13 +57,15 @@ void ParseContext::unknown(const XmlNode &node, const std::string &message) cons
         mistake(node, message);
 }
 
-void ParseContext::require_attributes(const XmlNode &node, std::initializer_list<const char *> names) const {
-    node.require_attributes(names, handler(), [&](const std::string &name, const std::string &message) {
-        if (is_leftover_attribute(node, name))
+bool ParseContext::require_attributes(const XmlNode &node, std::initializer_list<const char *> names,
+                                      std::initializer_list<const char *> optional) const {
+    const auto take_unknown = [&](const std::string &name, const std::string &message) {
+        if (is_leftover && is_leftover(node, name))
             note(fmt::format("{}: attribute '{}' of <{}> means nothing here", node.place().text(), name, node.tag()));
         else
             unknown(node, message);
-    });
+    };
+    return node.require_attributes(names, handler(), take_unknown, optional);
 }
 
 void ParseContext::gather(const XmlNode &node, const Error &error) const {

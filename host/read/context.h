@@ -11,7 +11,7 @@
 
 namespace opal {
 
-// The mistakes of one file, told together.
+// The mistakes of all files of a scene, told together.
 class Mistakes {
 public:
     // text: the whole message; at: its place in the scene's file, by which mistakes are ordered.
@@ -21,7 +21,8 @@ public:
             list_.push_back({at, text});
     }
     size_t count() const { return list_.size(); }
-    // Throws Error or ErrorList, in the order of the file, if there are any: the first 20, and how many more there are.
+    // Throws Error or ErrorList, if there are any: the first 20, and how many more there are. Files are in the order of
+    // their first mistakes.
     void throw_all() const;
 
 private:
@@ -41,14 +42,17 @@ struct ParseContext {
     Mistakes *mistakes = nullptr;     // gathers mistakes; null: the first one is thrown
     std::optional<Dialect> dialect{}; // nothing: a scene's names tell it
     FileHashes *hashes = nullptr;     // gets those of the files that are read; null: nobody asks
+    // Is it an attribute that means nothing in this format, and gets a note? null: there is none.
+    bool (*is_leftover)(const XmlNode &node, const std::string &attribute) = nullptr;
 
     void mistake(const SourcePlace &place, const std::string &message) const;
     void mistake(const XmlNode &node, const std::string &message) const { mistake(node.place(), message); }
     MistakeHandler handler() const;
     // A name that Opal does not know: a mistake, or a warning if lenient.
     void unknown(const XmlNode &node, const std::string &message) const;
-    // As XmlNode::require_attributes. Leftovers (names.h) get a note.
-    void require_attributes(const XmlNode &node, std::initializer_list<const char *> names) const;
+    // As XmlNode::require_attributes. Leftovers get a note.
+    bool require_attributes(const XmlNode &node, std::initializer_list<const char *> names,
+                            std::initializer_list<const char *> optional = {}) const;
 
     // Runs `make`, which may read the object at `node`. An Error is gathered with the others, so that parsing goes on.
     template <class Make> void attempt(const XmlNode &node, Make make) const {

@@ -21,7 +21,8 @@ using namespace std::literals;
 const std::string by_assimp = "convert it: assimp export FILE NEW.obj (Debian: assimp-utils), or import it into "
                               "Blender and export Wavefront (.obj)";
 const std::string by_blender = "open it in Blender and export Wavefront (.obj)";
-const std::string no_text_format = "Opal reads Nori's scenes (.xml) and Wavefront meshes (.obj)";
+const std::string no_text_format = "Opal reads Nori's scenes (.xml) and Wavefront and PLY meshes (.obj, .ply)";
+const std::string by_scene_for = "opal scene-for FILE > NEW.xml writes a scene around it";
 
 // Kinds that begin with bytes of their own.
 struct Magic {
@@ -30,8 +31,6 @@ struct Magic {
     FileKind kind = FileKind::other;
 };
 const std::vector<Magic> magics = {
-    {"ply\n", "a PLY mesh", by_assimp},
-    {"ply\r", "a PLY mesh", by_assimp},
     {"glTF", "a binary glTF scene", by_assimp},
     {"Kaydara FBX Binary", "an FBX scene", by_assimp},
     {"; FBX", "an FBX scene", by_assimp},
@@ -58,6 +57,14 @@ const std::vector<Magic> magics = {
     {"%PDF", "a PDF document", ""},
     {"version https://git-lfs", "a pointer that stands for the real file, by Git LFS", "get it: git lfs pull"},
 };
+
+// Its first line is "ply", and blanks may follow.
+bool is_ply(std::string_view bytes) {
+    if (!bytes.starts_with("ply"))
+        return false;
+    const size_t end = bytes.find_first_not_of(" \t", 3);
+    return end != bytes.npos && (bytes[end] == '\n' || bytes[end] == '\r');
+}
 
 // A binary STL has no magic: its size follows from its count of triangles.
 bool is_binary_stl(std::string_view bytes) {
@@ -130,16 +137,22 @@ bool has_long_version(std::string_view tag) {
     return std::count(value.begin(), value.end(), '.') == 2;
 }
 
-// Nori's forks have some of Mitsuba's tags, and some scenes of Nori a version: both together, with a version as
-// Mitsuba writes it, are Mitsuba's.
+// Nori's forks have some of Mitsuba's tags, and some scenes of Nori a version. A version as Mitsuba 3 writes it is
+// Mitsuba's, unless there is a tag that Mitsuba does not have; a shorter one is, with tags that Nori does not have.
 bool is_mitsuba(std::string_view root) {
-    if (!has_long_version(root.substr(0, root.find('>'))))
+    const std::string_view tag = root.substr(0, root.find('>'));
+    const auto has = [&](std::initializer_list<std::string_view> tags) {
+        return std::ranges::any_of(tags, [&](std::string_view each) { return contains(root, each); });
+    };
+    if (!contains(tag, "version") || has({"<camera", "<mesh"}))
         return false;
-    for (std::string_view own : {"<shape", "<film", "<sensor", "<default", "<include", "<rgb", "<spectrum", "to_world"})
-        if (contains(root, own))
-            return true;
-    return false;
+    return has_long_version(tag) || has({"<film", "<sensor", "<include", "<rgb", "<spectrum", "to_world"});
 }
+
+// The objects that may be the root of a file that a scene of Mitsuba includes.
+constexpr std::string_view mitsuba_roots[] = {"bsdf",    "shape",   "emitter",   "sensor", "film",
+                                              "sampler", "rfilter", "texture",   "medium", "spectrum",
+                                              "volume",  "phase",   "integrator"};
 
 FileKindRow kind_of_xml(std::string_view text) {
     const std::string_view root = xml_root(text);
@@ -150,7 +163,9 @@ FileKindRow kind_of_xml(std::string_view text) {
     const auto name_end =
         std::find_if(root.begin() + 1, root.end(), [](char c) { return is_blank(c) || c == '>' || c == '/'; });
     const std::string_view tag(root.data() + 1, size_t(name_end - root.begin()) - 1);
-    if (tag == "scene" && is_mitsuba(root))
+    const std::string_view root_tag = root.substr(0, root.find('>'));
+    if (tag == "scene" ? is_mitsuba(root)
+                       : std::ranges::find(mitsuba_roots, tag) != std::end(mitsuba_roots) && has_long_version(root_tag))
         return {FileKind::mitsuba_scene, "a scene of Mitsuba",
                 "there is no converter: Opal reads Nori's scenes, scenes/ has some to start from"};
     if (tag == "scene" || tag == "test")
@@ -190,7 +205,7 @@ FileKindRow kind_of_text(std::string_view text) {
         return {FileKind::mtl, "a material library (MTL)", "the OBJ file names it by mtllib"};
     for (std::string_view own : {"v", "vn", "vt", "vp", "f", "o", "g", "s", "mtllib", "usemtl"})
         if (statement == own)
-            return {FileKind::obj, "a Wavefront OBJ mesh", "opal scene-for FILE > NEW.xml writes a scene around it"};
+            return {FileKind::obj, "a Wavefront OBJ mesh", by_scene_for};
     for (std::string_view pbrt : {"LookAt", "WorldBegin", "Film", "Sampler", "Integrator", "Camera", "Scale"})
         if (statement == pbrt)
             return {FileKind::text, "a scene of PBRT", no_text_format};
@@ -201,6 +216,8 @@ const char *name_of(FileKind wanted) {
     switch (wanted) {
     case FileKind::obj:
         return "an OBJ file";
+    case FileKind::ply:
+        return "a PLY file";
     case FileKind::mtl:
         return "a material library (MTL)";
     default:
@@ -236,6 +253,8 @@ FileKindRow kind_of(std::string_view bytes) {
         return {FileKind::text, unicode + " text", fmt::format("convert it: iconv -f {} -t UTF-8 FILE > NEW", unicode)};
     if (bytes.starts_with("\xef\xbb\xbf"))
         bytes.remove_prefix(3);
+    if (is_ply(bytes))
+        return {FileKind::ply, "a PLY mesh", by_scene_for};
     for (const Magic &magic : magics)
         if (bytes.starts_with(magic.bytes))
             return {magic.kind, magic.name, magic.advice};
@@ -247,16 +266,24 @@ FileKindRow kind_of(std::string_view bytes) {
 }
 
 std::string wrong_kind_text(const std::filesystem::path &file, const FileKindRow &found, FileKind wanted) {
-    return fmt::format("{}: is {}, not {}{}{}", file.string(), found.name, name_of(wanted),
-                       found.advice.empty() ? "" : "; ", advice_for(file, found.advice));
+    std::string advice = advice_for(file, found.advice);
+    if (wanted == FileKind::obj && found.kind == FileKind::ply)
+        advice = "its type in a scene is ply";
+    else if (wanted == FileKind::ply && found.kind == FileKind::obj)
+        advice = "its type in a scene is obj";
+    return fmt::format("{}: is {}, not {}{}{}", file.string(), found.name, name_of(wanted), advice.empty() ? "" : "; ",
+                       advice);
 }
 
 std::string read_text_file(const std::filesystem::path &file, FileKind wanted, FileHashes *hashes) {
-    std::string text = read_file(file, wanted == FileKind::scene ? Pipes::read : Pipes::refused);
+    const bool is_scene = wanted == FileKind::scene || wanted == FileKind::mitsuba_scene;
+    std::string text = read_file(file, is_scene ? Pipes::read : Pipes::refused);
     if (hashes)
         hashes->add(text);
     const FileKindRow found = kind_of(text);
-    if (found.kind != FileKind::unknown && found.kind != wanted)
+    // A reader of Mitsuba's scenes was chosen for the file, or for one that includes it.
+    const bool fits = found.kind == wanted || (wanted == FileKind::mitsuba_scene && found.kind == FileKind::scene);
+    if (found.kind != FileKind::unknown && !fits)
         throw Error(wrong_kind_text(file, found, wanted));
     if (text.starts_with("\xef\xbb\xbf"))
         text.erase(0, 3);

@@ -97,12 +97,13 @@ std::vector<XmlNode> XmlNode::children(const MistakeHandler &mistake) const {
     return elements_of(*document_, node_, mistake);
 }
 
-void XmlNode::require_attributes(std::initializer_list<const char *> names, const MistakeHandler &mistake,
-                                 const AttributeHandler &unknown) const {
+bool XmlNode::require_attributes(std::initializer_list<const char *> names, const MistakeHandler &mistake,
+                                 const AttributeHandler &unknown, std::initializer_list<const char *> optional) const {
     constexpr ptrdiff_t most_attributes = 1000; // each is looked for among all
     if (const auto all = node_.attributes(); std::distance(all.begin(), all.end()) > most_attributes)
         fail(fmt::format("<{}> has more than {} attributes", tag(), most_attributes));
-    const std::vector<std::string> known(names.begin(), names.end());
+    std::vector<std::string> known(names.begin(), names.end());
+    known.insert(known.end(), optional.begin(), optional.end());
     std::set<std::string> seen;
     for (pugi::xml_attribute attribute : node_.attributes()) {
         std::string name = attribute.name();
@@ -115,9 +116,24 @@ void XmlNode::require_attributes(std::initializer_list<const char *> names, cons
             fail(message);
         unknown(name, message);
     }
-    for (const std::string &name : known)
-        if (!seen.contains(name))
+    bool has_all = true;
+    for (const char *name : names)
+        if (!seen.contains(name)) {
             tell(mistake, place(), fmt::format("<{}> lacks the attribute '{}'", tag(), name));
+            has_all = false;
+        }
+    return has_all;
+}
+
+void XmlNode::require_empty() const {
+    if (const std::vector<XmlNode> within = children(); !within.empty())
+        within.front().fail(fmt::format("<{}> holds nothing", tag()));
+}
+
+void XmlNode::edit_attributes(const std::function<std::string(const std::string &)> &edit) const {
+    for (pugi::xml_attribute attribute : node_.attributes())
+        if (const std::string_view text = attribute.value(); text.find('$') != text.npos)
+            attribute.set_value(edit(std::string(text)).c_str());
 }
 
 void XmlNode::fail(const std::string &message) const { throw XmlError(place(), message); }
@@ -174,9 +190,7 @@ public:
         : document_(document), values_(values), mistake_(mistake) {}
 
     bool for_each(pugi::xml_node &node) override {
-        for (pugi::xml_attribute attribute : node.attributes())
-            if (const std::string_view text = attribute.value(); text.find('$') != text.npos)
-                attribute.set_value(replaced(node, std::string(text)).c_str());
+        XmlNode(document_, node).edit_attributes([&](const std::string &text) { return replaced(node, text); });
         return true;
     }
     Definitions used;
@@ -208,11 +222,7 @@ private:
         if (known_.empty())
             for (const auto &[other, value] : values_)
                 known_.push_back(other);
-        const std::string nearest = nearest_name(name, known_);
-        tell(
-            mistake_, XmlNode(document_, node).place(),
-            fmt::format("${} has no value{}: -D {}=VALUE gives one, or <default name=\"{}\" value=\"...\"/> in <scene>",
-                        name, nearest.empty() ? "" : fmt::format("; did you mean '${}'?", nearest), name, name));
+        tell(mistake_, XmlNode(document_, node).place(), no_value_text(name, known_));
     }
 
     const XmlDocument &document_;
@@ -225,6 +235,12 @@ private:
 
 bool is_definable(std::string_view name) {
     return !name.empty() && begins_name(name[0]) && std::all_of(name.begin(), name.end(), is_name_letter);
+}
+
+std::string no_value_text(const std::string &name, const std::vector<std::string> &known) {
+    const std::string nearest = nearest_name(name, known);
+    return fmt::format("${} has no value{}: -D {}=VALUE gives one, or <default name=\"{}\" value=\"...\"/> in <scene>",
+                       name, nearest.empty() ? "" : fmt::format("; did you mean '${}'?", nearest), name, name);
 }
 
 Definitions XmlDocument::define(const Definitions &given, const MistakeHandler &mistake) {

@@ -40,6 +40,8 @@ using AttributeHandler = std::function<void(const std::string &name, const std::
 using Definitions = std::map<std::string, std::string>;
 // Letters, digits and '_', with no digit first.
 bool is_definable(std::string_view name);
+// The sentence for a $name without a value.
+std::string no_value_text(const std::string &name, const std::vector<std::string> &known);
 
 // The places of a text, marked once: one is then found in logarithmic time, so that files of 1e5 objects load.
 class TextLines {
@@ -70,9 +72,14 @@ public:
     bool has_attribute(const char *name) const { return !node_.attribute(name).empty(); }
     // The child elements, in document order. Text between them is a mistake.
     std::vector<XmlNode> children(const MistakeHandler &mistake = {}) const;
-    // It is a mistake unless the element has exactly these attributes, each once.
-    void require_attributes(std::initializer_list<const char *> names, const MistakeHandler &mistake = {},
-                            const AttributeHandler &unknown = {}) const;
+    // It is a mistake unless the element has exactly these attributes, each once, and of the optional ones any. Returns
+    // whether it has all.
+    bool require_attributes(std::initializer_list<const char *> names, const MistakeHandler &mistake = {},
+                            const AttributeHandler &unknown = {},
+                            std::initializer_list<const char *> optional = {}) const;
+    void require_empty() const; // throws XmlError at the first element within it
+    // Puts what `edit` makes of it in the place of each attribute's value that holds a '$'.
+    void edit_attributes(const std::function<std::string(const std::string &)> &edit) const;
     [[noreturn]] void fail(const std::string &message) const; // throws XmlError
 
 private:

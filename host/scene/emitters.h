@@ -6,7 +6,9 @@
 #include "emitters/list.h"
 #include "scene/parameters.h"
 #include "scene/place.h"
+#include "scene/textures.h"
 
+#include <optional>
 #include <variant>
 
 namespace opal {
@@ -46,9 +48,17 @@ template <class Unused, class... Kinds> using VariantOf = std::variant<Kinds...>
 #define OPAL_EMITTER_ALTERNATIVE(name, traits) , emitter_##name
 using EmitterParameters = VariantOf<void OPAL_SCENE_EMITTERS(OPAL_EMITTER_ALTERNATIVE)>;
 
+// A texture that multiplies the intensity of a spot. Its u grows along x, its v along y, which are unit vectors across
+// the light's direction; its unit square is what the circle of the cutoff angle touches.
+struct LightTexture {
+    Texture texture;
+    Vec3 x, y;
+};
+
 struct Light {
     EmitterParameters parameters;
     SourcePlace place;
+    std::optional<LightTexture> texture{}; // of a spot alone
 
     uint kind() const { // EMITTER_*
         return std::visit([](const auto &own) { return own.kind; }, parameters);

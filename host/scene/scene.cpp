@@ -25,13 +25,12 @@ const char *bsdf_name(unsigned kind) {
 
 unsigned bsdf_traits(unsigned kind) {
 #define OPAL_BSDF_TRAITS(name, traits) traits,
-#define OPAL_NO_TRAITS(name, refused) 0,
-    static const unsigned all[] = {OPAL_BSDFS(OPAL_BSDF_TRAITS) OPAL_NESTING_BSDFS(OPAL_NO_TRAITS)};
+    static const unsigned all[] = {OPAL_ALL_BSDFS(OPAL_BSDF_TRAITS)};
     return all[kind];
 }
 
 unsigned Bsdf::traits() const {
-    unsigned traits = bsdf_traits(kind());
+    unsigned traits = bsdf_traits(kind()) & ~OPAL_HOLDS_OPAQUE;
     for (const Bsdf &child : children)
         traits |= child.traits();
     return traits;
@@ -54,6 +53,10 @@ bool Bsdf::leads_to(uint wanted) const {
            std::any_of(children.begin(), children.end(), [&](const Bsdf &child) { return child.leads_to(wanted); });
 }
 
+bool Bsdf::is_textured() const {
+    return !textures.empty() || std::ranges::any_of(children, [](const Bsdf &child) { return child.is_textured(); });
+}
+
 const char *camera_name(unsigned kind) {
 #define OPAL_CAMERA_NAME(name, record, traits) #name,
     static const char *const names[] = {OPAL_CAMERAS(OPAL_CAMERA_NAME)};
@@ -64,7 +67,9 @@ const char *camera_name(unsigned kind) {
 std::string camera_text(const Camera &camera) {
     std::string text = camera_name(camera.kind);
     switch (camera.kind) {
-#define OPAL_NUMBER_TEXT(type, name, xml, initial, range, meaning) text += fmt::format(", " xml " {:g}", own.name);
+#define OPAL_NUMBER_TEXT(type, name, xml, initial, range, meaning)                                                     \
+    if (own.name != 0 || initial != 0) /* else nothing is shifted, or no lens is there */                              \
+        text += fmt::format(", " xml " {:g}", own.name);
 #define OPAL_CAMERA_TEXT(name, record, traits)                                                                         \
     case CAMERA_##name: {                                                                                              \
         [[maybe_unused]] const auto &own = camera.name;                                                                \
@@ -80,6 +85,10 @@ std::string camera_text(const Camera &camera) {
 bool has_light(const SceneDescription &scene) {
     return !scene.lights.empty() ||
            std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh &mesh) { return mesh.radiance; });
+}
+
+bool is_textured(const SceneDescription &scene) {
+    return std::ranges::any_of(scene.meshes, [](const Mesh &mesh) { return mesh.bsdf.is_textured(); });
 }
 
 const Light *light_missed_by_bsdfs(const SceneDescription &scene) {

@@ -10,6 +10,7 @@
 #include "scene/place.h"
 #include "scene/shapes.h"
 #include "scene/strategy.h"
+#include "scene/textures.h"
 #include "shared/types.h"
 
 #include <filesystem>
@@ -32,14 +33,15 @@ inline const std::string &name_of(Dialect dialect) { return dialects()[static_ca
 
 // Names of kinds, as the XML gives them: "diffuse".
 const char *bsdf_name(unsigned kind);   // kind: BSDF_*
-unsigned bsdf_traits(unsigned kind);    // OPAL_SMOOTH and so on, as bits; 0 of a kind that leads to others
+unsigned bsdf_traits(unsigned kind);    // OPAL_SMOOTH and so on, as bits; of a kind that leads to others its own
 const char *camera_name(unsigned kind); // kind: CAMERA_*
 
 // A material: the record of its kind, ready for the device but for the places of the BSDFs that it leads to. By default
 // a grey diffuse one.
 struct Bsdf {
     std::vector<uint> words;    // of a bsdf_NAME_record
-    std::vector<Bsdf> children; // of its parameters of type BSDF, in their order
+    std::vector<Bsdf> children; // of its parameters of type BSDF, in their order; one stands for both of twosided
+    std::map<size_t, Texture> textures; // what multiplies parameters, by Parameter::texture_word
     SourcePlace place;
 
     Bsdf() : Bsdf(bsdf_diffuse_record{}) {}
@@ -48,6 +50,7 @@ struct Bsdf {
     uint kind() const { return words[0]; } // BSDF_*
     unsigned traits() const;               // OPAL_SMOOTH and so on, as bits; those of its children where it has some
     bool leads_to(uint kind) const;        // is of that kind, or a BSDF within it is
+    bool is_textured() const;              // or a BSDF within it is
     template <class Record> bool is() const { return kind() == Record{}.kind; }
     template <class Record> Record as() const { return record_of<Record>(words); } // is<Record>() must hold
 };
@@ -106,6 +109,8 @@ struct SceneDescription {
     std::map<std::string, std::string> definitions; // the values that stand for $name in the file
     Strategy strategy;
     bool hides_emitters = false; // rays of the camera pass emitters, and see no environment
+    bool lights_reflect = false; // direct_lighting: surfaces that emit show the light that they reflect, too
+    bool wants_variance = false; // the EXR gets the layers of --layers variance
     bool normals_signed = false;
     SimpleLight simple_light;
     double visibility_length = 1; // integrator av: how far it looks
@@ -115,7 +120,8 @@ struct SceneDescription {
     SourcePlace sampler_place; // of the <sampler>, else of the <scene>
 };
 
-bool has_light(const SceneDescription &scene); // an emitter of any kind
+bool has_light(const SceneDescription &scene);   // an emitter of any kind
+bool is_textured(const SceneDescription &scene); // has a texture on something
 
 // The first light that no BSDF sample can hit, or null.
 const Light *light_missed_by_bsdfs(const SceneDescription &scene);

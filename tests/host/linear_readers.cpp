@@ -133,3 +133,39 @@ TEST_CASE("A million warnings are told as a thousand", "[linear_readers]") {
     CHECK(warnings().back() == "more warnings follow, which are not told");
     forget_warnings();
 }
+
+TEST_CASE("PLY of a hundred thousand properties, elements, names or corners takes linear time", "[linear_readers]") {
+    const ScratchFolder folder;
+    const std::string start = "ply\nformat ascii 1.0\n", vertex = "element vertex 3\n",
+                      xyz = "property float x\nproperty float y\nproperty float z\n",
+                      face = "element face 1\nproperty list int int vertex_index\nend_header\n",
+                      body = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    const auto properties = [](const char *name) {
+        return repeated([&](int i) { return fmt::format("property char {}{}\n", name, i); });
+    };
+    const std::string zeros = repeated([](int) { return " 0"; });
+    std::string error;
+    SECTION("properties of a vertex") {
+        folder.write("a.ply", start + vertex + xyz + properties("p") + face + "0 0 0" + zeros + "\n1 0 0" + zeros +
+                                  "\n0 1 0" + zeros + "\n3 0 1 2\n");
+    }
+    SECTION("elements that are skipped") {
+        folder.write("a.ply", start + vertex + xyz +
+                                  repeated([](int i) { return fmt::format("element e{} 1\nproperty int a\n", i); }) +
+                                  face + "0 0 0\n1 0 0\n0 1 0\n" + repeated([](int) { return "7\n"; }) + "3 0 1 2\n");
+    }
+    SECTION("comments and blank lines") {
+        folder.write("a.ply", start + repeated([](int) { return "comment\n\n"; }) + vertex + xyz + face +
+                                  repeated([](int) { return "\n"; }) + body);
+    }
+    SECTION("a header without an end") {
+        folder.write("a.ply", start + vertex + properties("p"));
+        error = "the file ends before 'end_header'";
+    }
+    SECTION("corners of one face") {
+        folder.write("a.ply", start + vertex + xyz + face + "0 0 0\n1 0 0\n0 1 0\n" + std::to_string(many + 3) +
+                                  " 0 1 2" + zeros + "\n");
+    }
+    load_in_time(folder, scene_of("<mesh type='ply'><string name='filename' value='a.ply'/></mesh>"),
+                 error.empty() ? 1 : 0, error);
+}

@@ -206,3 +206,19 @@ TEST_CASE_METHOD(WarningFixture, "What a scene leaves to defaults is noted once"
     normals.strategy[AXIS_integrator] = CHOICE_integrator_normals;
     CHECK(notes(normals, true).empty());
 }
+
+TEST_CASE_METHOD(WarningFixture, "a spot that lights no mesh is told", "[scene_warnings]") {
+    const auto spot = [](const char *direction, double cutoff) {
+        return fmt::format(R"(<emitter type="spot"><point name="position" value="0 9 5"/>)"
+                           R"(<vector name="direction" value="{}"/><float name="cutoffAngle" value="{}"/></emitter>)",
+                           direction, cutoff);
+    };
+    const std::string cube = cube_at("0 0 5") + "\n";
+    CHECK(warned(cube + spot("0 -1 0", 1)).empty());
+    CHECK(warned(cube + spot("0 1 0", 180)).empty());
+    CHECK(warned(cube + spot("1 0 0", 85)).empty()); // 90 degrees to the cube's middle, which spans 11
+    const std::string away = "scene.xml:4:1: a spot lights nothing: no mesh lies within cutoffAngle of the axis";
+    CHECK(warned(cube + spot("0 1 0", 60)) == Lines{away});
+    CHECK_THAT(warned(cube + spot("0 1 0", 60) + spot("1 0 0", 70)).at(0),
+               Catch::Contains(": 2 spots light nothing: "));
+}

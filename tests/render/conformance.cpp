@@ -64,6 +64,9 @@ TEST_CASE("Wrong kernels are rejected", "[conformance][stat]") {
         {"emitters/mesh.cl", "    return color;", "    return v3_all((real)(NAN));", "furnace.xml", 1000},
         {"emitters/area_light.cl", "square(s->t) /", "s->t /", "furnace.xml", 100000}, // MIS mixes measures
         {"emitters/constant.cl", "color, 1 / square", "color, 2 / square", "sky.xml", 1000},
+        {"emitters/dispatch.cl", "ray.d = v3_pick(light.infinite, light.d, d);", "", "spots_and_lenses.xml", 1000},
+        {"emitters/spot.cl", "falloff * square(inverse_distance)", "falloff * inverse_distance", "spots_and_lenses.xml",
+         1000},
         {"core/warp.cl", "R(0.5) * log1p", "R(0.52) * log1p", "chi2_bsdfs.xml", 200000}, // another exponent
         {"bsdfs/phong.cl", "base_chance * square_to_cosine_hemisphere_pdf(wo) +",
          "R(1.02) * base_chance * square_to_cosine_hemisphere_pdf(wo) +", "chi2_bsdfs.xml", 200000},

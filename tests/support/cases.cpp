@@ -25,7 +25,6 @@ bool in_unit_square(const Parallelogram &p) {
     return in_unit_square(p.origin) && in_unit_square(p.origin + p.u) && in_unit_square(p.origin + p.v) &&
            in_unit_square(p.origin + p.u + p.v);
 }
-
 bool in_unit_square(const Sphere &) { return true; } // its directions are counted
 
 } // namespace

@@ -6,28 +6,27 @@
 #include "base/math.h"
 #include "base/table.h"
 #include "read/context.h"
+#include "read/mitsuba/spectrum.h"
 
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace opal::mitsuba {
 
 class Document;
 
-// What a spectrum is for, which decides how it becomes linear RGB.
-enum class SpectrumUse {
-    reflectance, // and opacities, weights: unbounded textures
-    radiance,    // and intensity, irradiance
-    index        // eta and k of conductors
-};
-
-// An object after `$names`, <include>, <ref> and the renaming of old versions: what a <ref> names is the same Object as
-// that which it refers to. Fetching marks a property as known, so an Object is no constant.
+// An object after `$names`, <include>, <ref> and the renaming of old versions. A <ref> gives the very Object that it
+// refers to, which may so be met several times: a reader keeps what it made of one by its address. References make no
+// circles, and no more than 64 objects lie within each other. Fetching marks a property as known, so an Object is no
+// constant.
 class Object {
 public:
+    Object(Document &document, size_t index, const XmlNode &node, std::string name);
+
     const std::string &tag() const;  // "bsdf"
     const std::string &type() const; // the plug-in: "diffuse"
     const std::string &id() const;   // "" where it has none
@@ -42,7 +41,8 @@ public:
     std::optional<Vec3> point(const std::string &name);  // <point> or <vector>
     std::optional<Vec3> vector(const std::string &name); // likewise
     std::optional<Transform> transform(const std::string &name);
-    // The colour of an <rgb>, a <spectrum> or, as grey, a <float>. A <texture> there is none: it stays a child.
+    // The colour of an <rgb>, a <spectrum> or, as grey, a number. A <texture> there is none: it stays a child. It is a
+    // mistake if an <rgb> is no reflectance, 0 to 1. What a curve has outside of what can be is clamped, and warned of.
     std::optional<Color> color(const std::string &name, SpectrumUse use);
     bool has(const std::string &name) const; // of any type, a named child included; does not fetch it
 
@@ -69,6 +69,35 @@ public:
     void ignore_all();
 
     const ParseContext &context() const;
+
+private:
+    friend class Document;
+
+    // What a property holds. monostate: there is a mistake in it, which is told. Object *: a child.
+    using Value = std::variant<std::monostate, bool, int, double, std::string, Vec3, Color, Spectrum,
+                               std::unique_ptr<Transform>, Object *>;
+    struct Property {
+        XmlNode node;
+        std::string name; // empty: a child without one
+        Value value;
+        bool asked = false;
+    };
+
+    const Property *look(const std::string &name) const;
+    Property *ask(const std::string &name);
+    Property *ask(const std::string &name, std::initializer_list<const char *> tags);
+    template <class T> std::optional<T> find(const std::string &name, std::initializer_list<const char *> tags);
+    std::optional<Color> spectrum_color(SpectrumUse use); // of this object, a <spectrum type="...">
+    std::string owner() const;                            // " of bsdf 'diffuse'"
+    void tell_unfetched(const Property &property) const;
+
+    Document *document_;
+    size_t index_; // in it
+    XmlNode node_;
+    std::string tag_, type_, id_, name_;
+    std::vector<Property> properties_; // in the order of the file, with the children
+    std::vector<std::string> known_properties_, known_tags_;
+    bool is_finished_ = false;
 };
 
 // A file as a tree of objects. The root's own place in the file, and its objects.
@@ -79,11 +108,12 @@ struct MitsubaScene {
 };
 
 // Reads a file and all that it includes. Mistakes go to the context; its hashes get every file that was read.
-// definitions: by the command line. Throws Error where there is no tree: malformed XML, no version.
+// definitions: by the command line. Throws Error where there is no tree: malformed XML, no version; UsageError if no
+// attribute names one of the definitions. The context is copied; its Mistakes and hashes must outlive the tree.
 MitsubaScene read_document(const std::filesystem::path &file, const Definitions &definitions,
                            const ParseContext &context);
 
-// Does the text's root element have the attribute `version`, as Mitsuba's files have and Nori's do not?
+// Is the text XML of Mitsuba: has its root element the attribute `version`, and its tags are not Nori's?
 bool is_mitsuba(const std::string &text);
 
 } // namespace opal::mitsuba

@@ -77,11 +77,9 @@ Properties::Value Properties::parse_value(const XmlNode &node) const {
         context_.require_attributes(node, {"name"});
         return parse_transform(node, context_);
     }
-    context_.require_attributes(node, {"name", "value"});
-    if (!node.has_attribute("name") || !node.has_attribute("value"))
+    if (!context_.require_attributes(node, {"name", "value"}))
         throw NoObject{}; // that is told
-    if (!node.children().empty())
-        node.children().front().fail("<" + node.tag() + "> holds nothing");
+    node.require_empty();
     return at_place(node, [&] {
         try {
             return parsers.at(node.tag())(node.attribute("value"));
@@ -140,6 +138,11 @@ void Properties::lacks_property(const std::string &name) {
 std::optional<bool> Properties::boolean_if(const std::string &name) {
     const Property *property = look(name);
     return property && property->node.tag() != "boolean" ? std::nullopt : boolean(name);
+}
+
+std::optional<std::string> Properties::string_if(const std::string &name) {
+    const Property *property = look(name);
+    return property && property->node.tag() != "string" ? std::nullopt : string(name);
 }
 
 std::optional<std::string> Properties::text(const std::string &tag, const std::string &name) {
