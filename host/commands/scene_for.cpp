@@ -3,6 +3,7 @@
 #include "base/log.h"
 #include "commands/commands.h"
 #include "read/obj.h"
+#include "read/ply.h"
 
 #include <fmt/format.h>
 
@@ -15,9 +16,19 @@ namespace opal {
 namespace {
 
 struct Model {
-    std::string file;
-    ObjFile obj;
+    std::string file, type; // "obj", "ply"
+    ObjFile obj;            // of a PLY file the mesh alone
 };
+
+Model read_model(const std::string &file) {
+    std::string extension = std::filesystem::path(file).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return tolower(c); });
+    if (extension != ".ply")
+        return {file, "obj", read_obj(file, {})};
+    Model model{file, "ply", {}};
+    model.obj.mesh = read_ply(file, {});
+    return model;
+}
 
 // A sphere that holds all models; `lowest`: their least y, which is up.
 struct Bounds {
@@ -99,11 +110,11 @@ std::string camera_text(const Bounds &bounds) {
 
 std::string model_text(const Model &model) {
     const bool materials = !model.obj.materials.empty() && !model.obj.libraries.empty();
-    return fmt::format(R"(  <mesh type="obj">
+    return fmt::format(R"(  <mesh type="{}">
     <string name="filename" value="{}"/>
 {}  </mesh>
 )",
-                       escaped(model.file),
+                       model.type, escaped(model.file),
                        materials ? R"(    <!-- The OBJ file's own materials. A <bsdf> here would replace them. -->
     <boolean name="materials" value="true"/>
 )"
@@ -171,7 +182,7 @@ int run(const std::vector<std::string> &files) {
     for (const std::string &file : files) {
         if (file.find('\\') != std::string::npos)
             throw Error(file + ": a scene cannot name this file: a backslash separates folders there");
-        models.push_back({file, read_obj(file, {})});
+        models.push_back(read_model(file));
     }
     print_data(scene_text(models));
     return 0;
@@ -181,16 +192,18 @@ int run(const std::vector<std::string> &files) {
 
 Command scene_for_command() {
     auto files = std::make_shared<std::vector<std::string>>();
-    return {.name = "scene-for",
-            .help = "Print a scene that shows a mesh, to start from: opal scene-for MODEL.obj > SCENE.xml",
-            .options = {{.flags = "MODEL.obj",
-                         .target = files.get(),
-                         .help = "Meshes to show. Their paths are written into the scene as you type them: give them "
-                                 "relative to its folder",
-                         .required = true,
-                         .many_words = true}},
-            .examples = {"opal scene-for model.obj > scene.xml", "opal scene-for cup.obj saucer.obj > scene.xml"},
-            .run = [files] { return run(*files); }};
+    return {
+        .name = "scene-for",
+        .help = "Print a scene that shows a mesh, to start from: opal scene-for MODEL.obj > SCENE.xml",
+        .options =
+            {{.flags = "MODEL.obj",
+              .target = files.get(),
+              .help = "Meshes to show, OBJ or PLY. Their paths are written into the scene as you type them: give them "
+                      "relative to its folder",
+              .required = true,
+              .many_words = true}},
+        .examples = {"opal scene-for model.obj > scene.xml", "opal scene-for cup.obj saucer.obj > scene.xml"},
+        .run = [files] { return run(*files); }};
 }
 
 } // namespace opal

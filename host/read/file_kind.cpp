@@ -21,7 +21,8 @@ using namespace std::literals;
 const std::string by_assimp = "convert it: assimp export FILE NEW.obj (Debian: assimp-utils), or import it into "
                               "Blender and export Wavefront (.obj)";
 const std::string by_blender = "open it in Blender and export Wavefront (.obj)";
-const std::string no_text_format = "Opal reads Nori's scenes (.xml) and Wavefront meshes (.obj)";
+const std::string no_text_format = "Opal reads Nori's scenes (.xml) and Wavefront and PLY meshes (.obj, .ply)";
+const std::string by_scene_for = "opal scene-for FILE > NEW.xml writes a scene around it";
 
 // Kinds that begin with bytes of their own.
 struct Magic {
@@ -30,8 +31,6 @@ struct Magic {
     FileKind kind = FileKind::other;
 };
 const std::vector<Magic> magics = {
-    {"ply\n", "a PLY mesh", by_assimp},
-    {"ply\r", "a PLY mesh", by_assimp},
     {"glTF", "a binary glTF scene", by_assimp},
     {"Kaydara FBX Binary", "an FBX scene", by_assimp},
     {"; FBX", "an FBX scene", by_assimp},
@@ -58,6 +57,14 @@ const std::vector<Magic> magics = {
     {"%PDF", "a PDF document", ""},
     {"version https://git-lfs", "a pointer that stands for the real file, by Git LFS", "get it: git lfs pull"},
 };
+
+// Its first line is "ply", and blanks may follow.
+bool is_ply(std::string_view bytes) {
+    if (!bytes.starts_with("ply"))
+        return false;
+    const size_t end = bytes.find_first_not_of(" \t", 3);
+    return end != bytes.npos && (bytes[end] == '\n' || bytes[end] == '\r');
+}
 
 // A binary STL has no magic: its size follows from its count of triangles.
 bool is_binary_stl(std::string_view bytes) {
@@ -198,7 +205,7 @@ FileKindRow kind_of_text(std::string_view text) {
         return {FileKind::mtl, "a material library (MTL)", "the OBJ file names it by mtllib"};
     for (std::string_view own : {"v", "vn", "vt", "vp", "f", "o", "g", "s", "mtllib", "usemtl"})
         if (statement == own)
-            return {FileKind::obj, "a Wavefront OBJ mesh", "opal scene-for FILE > NEW.xml writes a scene around it"};
+            return {FileKind::obj, "a Wavefront OBJ mesh", by_scene_for};
     for (std::string_view pbrt : {"LookAt", "WorldBegin", "Film", "Sampler", "Integrator", "Camera", "Scale"})
         if (statement == pbrt)
             return {FileKind::text, "a scene of PBRT", no_text_format};
@@ -209,6 +216,8 @@ const char *name_of(FileKind wanted) {
     switch (wanted) {
     case FileKind::obj:
         return "an OBJ file";
+    case FileKind::ply:
+        return "a PLY file";
     case FileKind::mtl:
         return "a material library (MTL)";
     default:
@@ -244,6 +253,8 @@ FileKindRow kind_of(std::string_view bytes) {
         return {FileKind::text, unicode + " text", fmt::format("convert it: iconv -f {} -t UTF-8 FILE > NEW", unicode)};
     if (bytes.starts_with("\xef\xbb\xbf"))
         bytes.remove_prefix(3);
+    if (is_ply(bytes))
+        return {FileKind::ply, "a PLY mesh", by_scene_for};
     for (const Magic &magic : magics)
         if (bytes.starts_with(magic.bytes))
             return {magic.kind, magic.name, magic.advice};
@@ -255,8 +266,13 @@ FileKindRow kind_of(std::string_view bytes) {
 }
 
 std::string wrong_kind_text(const std::filesystem::path &file, const FileKindRow &found, FileKind wanted) {
-    return fmt::format("{}: is {}, not {}{}{}", file.string(), found.name, name_of(wanted),
-                       found.advice.empty() ? "" : "; ", advice_for(file, found.advice));
+    std::string advice = advice_for(file, found.advice);
+    if (wanted == FileKind::obj && found.kind == FileKind::ply)
+        advice = "its type in a scene is ply";
+    else if (wanted == FileKind::ply && found.kind == FileKind::obj)
+        advice = "its type in a scene is obj";
+    return fmt::format("{}: is {}, not {}{}{}", file.string(), found.name, name_of(wanted), advice.empty() ? "" : "; ",
+                       advice);
 }
 
 std::string read_text_file(const std::filesystem::path &file, FileKind wanted, FileHashes *hashes) {

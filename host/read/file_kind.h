@@ -13,6 +13,7 @@ namespace opal {
 enum class FileKind {
     unknown,
     obj,           // statements of a Wavefront OBJ
+    ply,           // begins with the line "ply"
     mtl,           // statements of a Wavefront material library
     scene,         // XML whose root is <scene> or <test>
     mitsuba_scene, // XML of Mitsuba: <scene version="3.0.0"> with its tags

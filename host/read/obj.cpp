@@ -3,7 +3,9 @@
 #include "base/error.h"
 #include "base/large_vector.h"
 #include "base/log.h"
+#include "read/mesh_parts.h"
 #include "read/obj_statements.h"
+#include "read/triangulate.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +16,6 @@
 #include <algorithm>
 #include <cmath>
 #include <istream>
-#include <limits>
 #include <unordered_map>
 
 namespace opal {
@@ -22,24 +23,6 @@ namespace opal {
 namespace {
 
 constexpr unsigned none = OPAL_NONE;
-
-// How far rounding the coordinates to double may move the corners of a triangle.
-double rounding_of(const std::array<Vec3, 3> &triangle) {
-    double largest = 0;
-    for (const Vec3 &p : triangle)
-        largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    return 4 * std::numeric_limits<double>::epsilon() * largest;
-}
-
-// A triangle has no area if its height over the longest edge may be due to rounding.
-bool has_area(const std::array<Vec3, 3> &p, double rounding) {
-    double longest2 = 0;
-    for (int i = 0; i < 3; ++i)
-        longest2 = std::max(longest2, dot(p[(i + 1) % 3] - p[i], p[(i + 1) % 3] - p[i]));
-    const Vec3 doubled_area = cross(p[1] - p[0], p[2] - p[0]);
-    return dot(doubled_area, doubled_area) >
-           rounding * rounding * longest2; // no overflow: squares of floats fit into doubles
-}
 
 // Statements of OBJ that hold no surface, or say how to show one, which Opal decides otherwise.
 constexpr std::string_view known_statements[] = {"vp",       "cstype",   "deg",   "bmat",  "step",       "parm",
@@ -75,9 +58,7 @@ private:
         ObjTally infinite;  // elements `vn` and `vt` that are not finite
         bool known = false; // some other statement of OBJ
         ObjTally unknown, not_surfaces;
-        ObjTally dropped; // triangles without area, faces of one or two corners
-        std::string first_dropped;
-        double rounding = 0; // the largest of dropped triangles
+        DroppedTriangles dropped;
     };
 
     static ObjReader &of(void *reader) { return *static_cast<ObjReader *>(reader); }
@@ -173,7 +154,7 @@ void ObjReader::add_position() {
         return;
     const auto [x, y, z] = numbers();
     const Vec3 p = to_world_.point({x, y, z});
-    if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= std::numeric_limits<float>::max()))
+    if (!fits_float(p))
         fail(words()[0],
              fmt::format("vertex {} is not finite in single precision once transformed", positions_so_far_));
     positions_.push_back(p);
@@ -186,9 +167,7 @@ void ObjReader::add_normal() {
         count(faces_.infinite, words()[0]);
     if (complete_)
         return;
-    const Vec3 n = to_world_.normal({x, y, z});
-    const double size = length(n);
-    normals_.push_back(std::isnormal(size) ? n * (1 / size) : Vec3{});
+    normals_.push_back(unit_normal(to_world_, {x, y, z}));
 }
 
 void ObjReader::add_uv() {
@@ -289,10 +268,12 @@ void ObjReader::add_triangle(size_t a, size_t b, size_t c) {
 
 // rounding: that of the triangle; 0 for a face of too few corners
 void ObjReader::drop(double rounding) {
-    if (faces_.dropped.count == 0)
-        faces_.first_dropped = faces_.object;
-    count(faces_.dropped, words()[0]);
-    faces_.rounding = std::max(faces_.rounding, rounding);
+    DroppedTriangles &dropped = faces_.dropped;
+    if (dropped.count++ == 0) {
+        dropped.first_place = place(words()[0]).text();
+        dropped.first_object = faces_.object;
+    }
+    dropped.rounding = std::max(dropped.rounding, rounding);
 }
 
 // Prints notes and warnings about the whole file.
@@ -309,42 +290,7 @@ void ObjReader::tell(const TriangleMesh &mesh) const {
     about(note, faces_.unknown, fmt::format("unknown statement '{}' is ignored", faces_.unknown.word));
     about(warn, absent, "no normal or texture coordinate has this index: the corner has none");
     about(warn, faces_.infinite, "a normal or texture coordinate is not finite: corners that name it have none");
-    std::string dropped;
-    if (faces_.dropped.count) {
-        const double size = mesh.extent().longest_side();
-        const std::string limit =
-            faces_.rounding > 0 && size > 0
-                ? fmt::format(", in height below {:.2g} of the mesh's size", faces_.rounding / size)
-                : "";
-        const std::string object =
-            faces_.first_dropped.empty() ? "" : fmt::format(", the first in '{}'", faces_.first_dropped);
-        dropped = fmt::format("dropped {} triangles without area{}{}", faces_.dropped.count, limit, object);
-    }
-    if (mesh.triangles.empty())
-        warn(fmt::format("{}: holds no triangles, so it is neither seen nor a light{}", file_,
-                         dropped.empty() ? "" : ": " + dropped));
-    else if (!dropped.empty())
-        warn(fmt::format("{}: {}, kept {}", faces_.dropped.place.text(), dropped, mesh.triangles.size()));
-}
-
-// Keeps the entries that corners of `triangles` refer to by index_of(corner), renumbered in the order of their first
-// use.
-template <class Entry, class Triangles, class IndexOf>
-LargeVector<Entry> compact(const LargeVector<Entry> &all, Triangles &triangles, const IndexOf &index_of) {
-    LargeVector<Entry> used;
-    LargeVector<unsigned> renumbered(all.size(), none);
-    for (auto &triangle : triangles)
-        for (auto &corner : triangle) {
-            unsigned &index = index_of(corner);
-            if (index == none)
-                continue;
-            if (renumbered[index] == none) {
-                renumbered[index] = unsigned(used.size());
-                used.push_back(all[index]);
-            }
-            index = renumbered[index];
-        }
-    return used;
+    warn_of_dropped(file_, faces_.dropped, mesh);
 }
 
 ObjFile ObjReader::finish() && {

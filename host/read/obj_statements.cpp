@@ -4,12 +4,11 @@
 #include "base/large_vector.h"
 #include "base/values.h"
 #include "read/file_kind.h"
+#include "read/mesh_parts.h"
 #include "read/xml.h"
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
-#include <limits>
 
 namespace opal {
 
@@ -30,31 +29,11 @@ size_t comment_in(std::string_view row) {
     return std::min(at, row.size());
 }
 
-// Whether all of the word is a number; also infinity and NaN.
-template <class Number> bool parse(std::string_view word, Number &number) {
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    return error == std::errc() && end == word.data() + word.size();
-}
-
-// The slower parse_number and parse_integer know what is wrong, and forms that are rare.
-
-double parse_coordinate(std::string_view word) {
-    double value;
-    return parse(word, value) && std::abs(value) <= std::numeric_limits<float>::max() ? value : parse_number(word);
-}
-
-// A coordinate, or NaN where infinity or NaN is written.
-double parse_coordinate_or_nan(std::string_view word) {
-    double value;
-    if (parse(word, value) && std::abs(value) <= std::numeric_limits<float>::max())
-        return value;
-    const std::string_view size = word.substr(word.starts_with('+') || word.starts_with('-'));
-    return (parse(size, value) && !std::isfinite(value)) || size.starts_with("1.#") ? NAN : parse_number(word);
-}
-
+// The slower parse_integer knows what is wrong, and forms that are rare.
 int parse_index(std::string_view word) {
     int value;
-    return parse(word, value) ? value : parse_integer(word);
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    return error == std::errc() && end == word.data() + word.size() ? value : parse_integer(word);
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-#include "read/obj.h"
+#include "read/triangulate.h"
 
 #include "base/error.h"
 

@@ -69,8 +69,9 @@ TEST_CASE("files are told by their bytes, whatever their names", "[file_kind]") 
         FileKind kind;
     };
     const std::vector<Row> rows = {
-        {"ply\nformat ascii 1.0\n", "a PLY mesh", FileKind::other},
-        {"ply\r\nformat ascii 1.0\r\n", "a PLY mesh", FileKind::other},
+        {"ply\nformat ascii 1.0\n", "a PLY mesh", FileKind::ply},
+        {"ply \t\r\nformat ascii 1.0\r\n", "a PLY mesh", FileKind::ply},
+        {"ply the trade\n", "", FileKind::unknown},
         {"glTF\2\0\0\0"s, "a binary glTF scene", FileKind::other},
         {"{ \"asset\" : { \"version\" : \"2.0\" } }", "a glTF scene", FileKind::other},
         {"{ \"a\": 1 }", "JSON", FileKind::text},
@@ -117,8 +118,12 @@ TEST_CASE("files are told by their bytes, whatever their names", "[file_kind]") 
 }
 
 TEST_CASE_METHOD(KindFixture, "the error says what the file is and how to convert it", "[file_kind]") {
-    CHECK_THAT(error_in("ply\nformat ascii 1.0\n"),
-               Catch::StartsWith("is a PLY mesh, not an OBJ file; convert it: assimp export " + file() + " NEW.obj"));
+    CHECK_THAT(error_in("OFF\n3 1 0\n"),
+               Catch::StartsWith("is an OFF mesh, not an OBJ file; convert it: assimp export " + file() + " NEW.obj"));
+    CHECK(error_in("ply\nformat ascii 1.0\n") == "is a PLY mesh, not an OBJ file; its type in a scene is ply");
+    CHECK(error_in(obj_text, FileKind::ply) == "is a Wavefront OBJ mesh, not a PLY file; its type in a scene is obj");
+    CHECK_THAT(error_in("ply\nformat ascii 1.0\n", FileKind::scene),
+               Catch::StartsWith("is a PLY mesh, not a scene; opal scene-for " + file() + " > NEW.xml"));
     CHECK(error_in("\x1f\x8b\x08"s, FileKind::scene) ==
           "is compressed by gzip, not a scene; unpack it: gzip -dc " + file() + " > NEW");
     CHECK_THAT(error_in(obj_text, FileKind::scene), Catch::StartsWith("is a Wavefront OBJ mesh, not a scene; "));

@@ -1,5 +1,6 @@
 #include "read/obj.h"
 #include "base/log.h"
+#include "read/triangulate.h"
 #include "support/error_of.h"
 #include "support/scratch.h"
 

@@ -1,5 +1,5 @@
 // Polygons cut into triangles: the same ears in the same order as plain ear clipping, but quickly.
-#include "read/obj.h"
+#include "read/triangulate.h"
 #include "support/error_of.h"
 
 #include <catch2/catch.hpp>

@@ -110,6 +110,17 @@ TEST_CASE("Any file name, several models, and materials of the OBJ file", "[scen
     CHECK(read_text(folder / "scene.xml").find("materials") != std::string::npos);
 }
 
+TEST_CASE("A PLY file is shown, too", "[scene_for]") {
+    const ScratchFolder folder;
+    folder.write("a.PLY", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+                          "z\nelement face 1\nproperty list uchar int vertex_index\nend_header\n"
+                          "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    const SceneDescription scene = load_scene(scene_for(folder, "a.PLY"));
+    REQUIRE(scene.meshes.size() == 3); // with floor and lamp
+    CHECK(scene.meshes[0].name == "a.PLY");
+    CHECK(reach(scene) < 0.99);
+}
+
 TEST_CASE("What cannot be shown is refused, and a model in place of a scene is told what to do", "[scene_for]") {
     const ScratchFolder folder;
     folder.write("model.obj", box({0, 0, 0}, {1, 1, 1}));
@@ -123,7 +134,7 @@ TEST_CASE("What cannot be shown is refused, and a model in place of a scene is t
     };
     CHECK_THAT(error("model.obj"), Catch::Contains("model.obj: is a Wavefront OBJ mesh, not a scene; opal scene-for"));
     CHECK_THAT(error("model.ply"), Catch::Contains("model.ply: is a PLY mesh, not a scene"));
-    CHECK_THAT(error("scene-for model.ply"), Catch::Contains("model.ply: is a PLY mesh, not an OBJ file"));
+    CHECK_THAT(error("scene-for model.ply"), Catch::Contains("model.ply: has no element 'vertex'"));
     CHECK_THAT(error("scene-for nothing.obj"), Catch::Contains("nothing.obj"));
     CHECK_THAT(error("scene-for 'a\\b.obj'"), Catch::Contains("backslash"));
     CHECK_THAT(error("scene-for", 2), Catch::Contains("MODEL.obj"));

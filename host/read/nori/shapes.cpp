@@ -1,8 +1,9 @@
-// Parsers of meshes: triangles of an OBJ file, and parallelograms.
+// Parsers of meshes: triangles of an OBJ or PLY file, and parallelograms.
 #include "base/error.h"
 #include "base/log.h"
 #include "read/nori/parsers.h"
 #include "read/obj_materials.h"
+#include "read/ply.h"
 
 #include <algorithm>
 
@@ -28,28 +29,45 @@ struct MeshStart {
     ObjMaterialOptions own;
 };
 
-std::vector<Mesh> parse_obj(Properties &properties, MeshStart start) {
-    // Properties are fetched before one is required: none of them is unknown where another is missing.
-    const auto filename = properties.string("filename");
-    const bool with_materials = properties.boolean("materials").value_or(false);
+// The meshes that `read` makes of a file, which an error in it names first.
+template <class Read>
+std::vector<Mesh> parse_file(Properties &properties, MeshStart &start, const std::optional<std::string> &filename,
+                             Read read) {
     std::string name = properties.required(filename, "filename");
     if (start.mesh.name.empty())
         start.mesh.name = name;
     const std::filesystem::path file = find_file(properties, name);
-    FileHashes *const hashes = properties.context().hashes;
     try {
+        return read(file);
+    } catch (const Error &error) {
+        throw Error(std::string(error.what()) + " (the mesh at " + start.mesh.place.text() + ")");
+    } catch (const std::bad_alloc &) {
+        throw Error(start.mesh.place.text() + ": out of memory while " + file.string() + " is read");
+    }
+}
+
+std::vector<Mesh> parse_obj(Properties &properties, MeshStart start) {
+    // Properties are fetched before one is required: none of them is unknown where another is missing.
+    const auto filename = properties.string("filename");
+    const bool with_materials = properties.boolean("materials").value_or(false);
+    FileHashes *const hashes = properties.context().hashes;
+    return parse_file(properties, start, filename, [&](const std::filesystem::path &file) -> std::vector<Mesh> {
         ObjFile obj = read_obj(file, start.to_world, hashes);
         if (with_materials)
             return meshes_by_material(std::move(obj), file, start.mesh, start.own, hashes);
         if (!start.own.own_bsdf)
             warn_of_unused_materials(obj, file);
         start.mesh.shape = std::move(obj.mesh);
-    } catch (const Error &error) { // the place in the OBJ file comes first
-        throw Error(std::string(error.what()) + " (the mesh at " + start.mesh.place.text() + ")");
-    } catch (const std::bad_alloc &) {
-        throw Error(start.mesh.place.text() + ": out of memory while " + file.string() + " is read");
-    }
-    return {std::move(start.mesh)};
+        return {std::move(start.mesh)};
+    });
+}
+
+std::vector<Mesh> parse_ply(Properties &properties, MeshStart start) {
+    const auto filename = properties.string("filename");
+    return parse_file(properties, start, filename, [&](const std::filesystem::path &file) -> std::vector<Mesh> {
+        start.mesh.shape = read_ply(file, start.to_world, properties.context().hashes);
+        return {std::move(start.mesh)};
+    });
 }
 
 std::vector<Mesh> parse_parallelogram(Properties &properties, MeshStart start) {
@@ -76,7 +94,8 @@ struct ShapeType {
     std::vector<Mesh> (*parse)(Properties &, MeshStart);
 };
 
-const std::vector<ShapeType> shape_types = {{"obj", parse_obj}, {"parallelogram", parse_parallelogram}};
+const std::vector<ShapeType> shape_types = {
+    {"obj", parse_obj}, {"ply", parse_ply}, {"parallelogram", parse_parallelogram}};
 
 } // namespace
 
