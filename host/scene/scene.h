@@ -21,9 +21,10 @@
 
 namespace opal {
 
-// The forks of Nori whose scenes Opal reads. They differ in the default filter (the 2022 course has a box, the others a
-// Gaussian) and in the camera: its +x points to the image's left, with ETH's course and the Nori of 2012 to the right.
-enum class Dialect { upstream, course, eth };
+// What a scene's file is written for: a fork of Nori, or Mitsuba. The forks differ in the default filter (the 2022
+// course has a box, the others a Gaussian) and in the camera: its +x points to the image's left, with ETH's course and
+// the Nori of 2012 to the right.
+enum class Dialect { upstream, course, eth, mitsuba };
 struct DialectRow {
     std::string name;
 };
@@ -90,6 +91,13 @@ struct Camera {
 };
 std::string camera_text(const Camera &camera); // its kind and parameters: "perspective, fov 30"
 
+// A plug-in that a file of Mitsuba uses.
+struct PluginUse {
+    std::string tag, type; // "bsdf", "diffuse"
+    std::string becomes;   // what Opal makes of it
+    size_t count = 0;      // of the objects
+};
+
 struct SimpleLight { // the one light of integrator `simple`
     Vec3 position;
     Color energy{};
@@ -111,8 +119,9 @@ struct SceneDescription {
     double visibility_length = 1; // integrator av: how far it looks
     unsigned spp = 1;
     bool sample_count_given = false;
-    SourcePlace place;         // of the <scene>
-    SourcePlace sampler_place; // of the <sampler>, else of the <scene>
+    SourcePlace place;              // of the <scene>
+    SourcePlace sampler_place;      // of the <sampler>, else of the <scene>
+    std::vector<PluginUse> plugins; // of a file of Mitsuba, in the order of their first use
 };
 
 bool has_light(const SceneDescription &scene); // an emitter of any kind

@@ -1,0 +1,116 @@
+// Parsers of materials.
+#include "read/mitsuba/parsers.h"
+#include "scene/index_of_refraction.h"
+
+#include <fmt/format.h>
+
+namespace opal::mitsuba {
+
+namespace {
+
+constexpr Color white{1, 1, 1};
+
+// A property of which Opal has the value 1 alone.
+void require_white(Import &import, Object &object, const char *name) {
+    const Color color = import.color(object, name, SpectrumUse::reflectance, white);
+    object.check(color == white, name, "Opal has only 1 here");
+}
+
+Bsdf parse_diffuse(Import &import, Object &object) {
+    const Color c = import.color(object, "reflectance", SpectrumUse::reflectance, {0.5, 0.5, 0.5});
+    return bsdf_diffuse_record{.albedo = {c[0], c[1], c[2]}};
+}
+
+// An index of refraction: a number, or the name of a material.
+double parse_index(Object &object, const char *name, const std::string &otherwise) {
+    if (!object.has(name))
+        return *index_of_refraction(otherwise);
+    const std::optional<std::string> medium = object.string_if(name);
+    if (!medium) {
+        const double index = object.number(name).value_or(1);
+        object.check(index > 0, name, "must be above 0");
+        return index;
+    }
+    const std::optional<double> index = index_of_refraction(*medium);
+    object.check(index.has_value(), name, unknown_name("medium", *medium, names_of(media())));
+    return index.value_or(1);
+}
+
+Bsdf parse_dielectric(Import &import, Object &object) {
+    const double inside = parse_index(object, "int_ior", "bk7"), outside = parse_index(object, "ext_ior", "air");
+    require_white(import, object, "specular_reflectance");
+    require_white(import, object, "specular_transmittance");
+    return bsdf_dielectric_record{.int_ior = inside, .ext_ior = outside};
+}
+
+// Opal's mirror is the conductor that reflects everything.
+Bsdf parse_conductor(Import &import, Object &object) {
+    const std::string material = object.string("material").value_or("none");
+    object.check(material == "none", "material", "Opal has only 'none' yet, which reflects everything");
+    for (const char *name : {"eta", "k"}) {
+        object.check(!object.has(name), name, "Opal has only the conductor that reflects everything yet");
+        object.ignore(name);
+    }
+    require_white(import, object, "specular_reflectance");
+    return bsdf_mirror_record{};
+}
+
+// The materials within a material, of which there must be so many.
+std::vector<Bsdf> parse_children(Import &import, Object &object, size_t least, size_t most) {
+    std::vector<Bsdf> made;
+    const auto children = object.children("bsdf");
+    for (const auto &child : children)
+        made.push_back(import.bsdf(*child));
+    if (children.size() < least || children.size() > most) {
+        object.mistake(fmt::format("a {} has {} <bsdf> within it, not {}", object.type(),
+                                   least == most ? fmt::format("{}", least) : fmt::format("{} or {}", least, most),
+                                   children.size()));
+        throw NoObject{};
+    }
+    return made;
+}
+
+Bsdf parse_twosided(Import &import, Object &object) {
+    Bsdf bsdf = bsdf_twosided_record{};
+    bsdf.children = parse_children(import, object, 1, 2);
+    for (const Bsdf &child : bsdf.children)
+        if (child.traits() & OPAL_TRANSMITS)
+            throw XmlError(child.place, "a twosided cannot hold a BSDF that light passes through");
+    if (bsdf.children.size() == 1)
+        bsdf.children.push_back(bsdf.children.front());
+    return bsdf;
+}
+
+Bsdf parse_mask(Import &import, Object &object) {
+    const double opacity = import.number(object, "opacity", 0.5);
+    object.check(opacity >= 0 && opacity <= 1, "opacity", "must be from 0 to 1");
+    Bsdf bsdf = bsdf_mask_record{.opacity = opacity};
+    bsdf.children = parse_children(import, object, 1, 1);
+    return bsdf;
+}
+
+Bsdf parse_null(Import &, Object &) { return bsdf_null_record{}; }
+
+const std::vector<Plugin<Bsdf (*)(Import &, Object &)>> bsdf_types = {
+    {"diffuse", "diffuse", parse_diffuse},
+    {"dielectric", "dielectric", parse_dielectric},
+    {"conductor", "mirror", parse_conductor},
+    {"twosided", "twosided", parse_twosided},
+    {"mask", "mask", parse_mask},
+    {"null", "null", parse_null},
+};
+
+} // namespace
+
+void parse_bsdf(Import &import, Object &object, Bsdf &bsdf) {
+    const auto *type = import.row_of_type(object, bsdf_types, "a diffuse one of reflectance 0.5 stands in for it");
+    if (!type)
+        return;
+    const SourcePlace place = object.place();
+    import.context().attempt(object, [&] { bsdf = type->parse(import, object);
+});
+bsdf.place = place;
+object.finish();
+} // namespace opal::mitsuba
+
+} // namespace opal::mitsuba
