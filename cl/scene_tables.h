@@ -8,6 +8,7 @@
 #include "emitters/list.h"
 #include "shapes/list.h"
 #include "shared/types.h"
+#include "textures/list.h"
 
 // TABLE(record, name, shown): an array of records; `shown` is what messages call it. The order is that of the
 // parameters.
@@ -21,6 +22,7 @@
     TABLE(MeshRecord, meshes, "meshes") \
     TABLE(uint, bsdfs, "words of bsdfs")                        /* records of bsdfs/list.h; equal ones are shared */ \
     TABLE(uint, textures, "words of textures")                  /* records of textures/list.h */ \
+    TABLE(uint, texels, "words of texels")                      /* bytes and floats of bitmaps */ \
     TABLE(EmitterRecord, emitters, "emitters") \
     TABLE(LightTriangle, light_triangles, "light triangles")
 

@@ -7,6 +7,7 @@
 typedef struct {
     v3 p;                // position
     real t, u, v;        // its distance along the ray, and its coordinates (Hit)
+    v2 uv;               // texture coordinates, where the kernel has textures
     v3 normal;           // geometric, unit, on the outer side: of triangles that of (p1-p0) x (p2-p0)
     Frame frame;         // around the shading normal
     v3 wi;               // towards the ray's origin, unit, in that frame
@@ -20,7 +21,7 @@ static Surface surface_pick(mask m, Surface yes, Surface no) {
     Frame frame = {v3_pick(m, yes.frame.s, no.frame.s), v3_pick(m, yes.frame.t, no.frame.t),
                    v3_pick(m, yes.frame.n, no.frame.n)};
     Surface s = {v3_pick(m, yes.p, no.p), m ? yes.t : no.t, m ? yes.u : no.u, m ? yes.v : no.v,
-                 v3_pick(m, yes.normal, no.normal), frame, v3_pick(m, yes.wi, no.wi),
+                 v2_of(m ? yes.uv.x : no.uv.x, m ? yes.uv.y : no.uv.y), v3_pick(m, yes.normal, no.normal), frame, v3_pick(m, yes.wi, no.wi),
                  uints_pick(m, yes.primitive, no.primitive), m ? yes.ray_offset : no.ray_offset,
                  uints_pick(m, yes.bsdf, no.bsdf), uints_pick(m, yes.emitter, no.emitter)};
     return s;
@@ -30,7 +31,7 @@ static Surface surface_pick(mask m, Surface yes, Surface no) {
 static Surface no_surface(void) {
     v3 zero = v3_all((real)(0));
     Frame frame = {zero, zero, zero};
-    Surface s = {zero, (real)(0), (real)(0), (real)(0), zero, frame, zero, (uints)(0), (real)(0), (uints)(0),
+    Surface s = {zero, (real)(0), (real)(0), (real)(0), v2_of((real)(0), (real)(0)), zero, frame, zero, (uints)(0), (real)(0), (uints)(0),
                  (uints)(OPAL_NONE)};
     return s;
 }

@@ -118,6 +118,8 @@ typedef WIDE(uint) uints;
 #define real_of_bits(i) CAT(as_, WIDE(REAL_NAME))(i)
 #define to_real(i) CAT(convert_, WIDE(REAL_NAME))(i)
 #define to_uints(x) CAT(convert_, WIDE(uint))(x)
+#define as_signed(i) CAT(as_, WIDE(int))(i)
+#define as_unsigned(i) CAT(as_, WIDE(uint))(i)
 
 // a b + c, which compilers contract to one instruction where the device has it. PoCL's mad() stays two.
 #define mul_add(a, b, c) ((a) * (b) + (c))

@@ -28,6 +28,8 @@
     OPAL_FEATURE_ROW(two_sided_lights, "two_sided_lights") \
     /* some mesh interpolates vertex normals */ \
     OPAL_FEATURE_ROW(shading_normals, "shading_normals") \
+    /* textures: surfaces have texture coordinates */ \
+    OPAL_FEATURE_ROW(uv, "uv") \
     /* rays of the camera pass emitters */ \
     OPAL_FEATURE_ROW(hidden_emitters, "hidden_emitters") \
     /* direct_lighting takes several samples of a kind */ \

@@ -15,6 +15,7 @@ enum { OPAL_SHAPES(OPAL_SHAPE_ENUM) SHAPE_COUNT };
 #define OPAL_SHAPE_TABLES(TABLE) \
     TABLE(TriangleBlock, triangle_blocks, "triangle blocks") \
     TABLE(Triangle, triangles, "triangles") \
+    TABLE(TriangleUv, triangle_uvs, "uv of triangles") \
     TABLE(SphereBlock, sphere_blocks, "sphere blocks")
 
 #ifdef __cplusplus
@@ -35,6 +36,12 @@ typedef struct {
     uint mesh;
 } Triangle;
 OPAL_SIZE_CHECK(Triangle, 16);
+
+// The texture coordinates of a triangle's corners, in scenes that have textures.
+typedef struct {
+    float corner[3][2];
+} TriangleUv;
+OPAL_SIZE_CHECK(TriangleUv, 24);
 
 // Eight spheres. Unused places come last. They have radius 0 and id OPAL_NONE.
 typedef struct {

@@ -59,6 +59,19 @@ static v3 shading_normal(const Scene *scene, CornerNormals corners, real u, real
     return v3_pick(corners.smooth & (length2 > 0), v3_scale(n, rsqrt(length2)), geometric);
 }
 
+// The texture coordinates of triangles at barycentric weights u, v.
+static v2 triangle_uv(const Scene *scene, uints triangle, real u, real v) {
+    if (!OPAL_HAS_uv) return v2_of((real)(0), (real)(0));
+    real w = 1 - u - v;
+    real x = w * GATHER(real, scene->triangle_uvs, triangle, .corner[0][0]) +
+             u * GATHER(real, scene->triangle_uvs, triangle, .corner[1][0]) +
+             v * GATHER(real, scene->triangle_uvs, triangle, .corner[2][0]);
+    real y = w * GATHER(real, scene->triangle_uvs, triangle, .corner[0][1]) +
+             u * GATHER(real, scene->triangle_uvs, triangle, .corner[1][1]) +
+             v * GATHER(real, scene->triangle_uvs, triangle, .corner[2][1]);
+    return v2_of(x, y);
+}
+
 // Barycentric weights that keep points away from the sides stay below a third, the weight of the centroid.
 #define LARGEST_INSET R(0.3333)
 
@@ -102,6 +115,7 @@ static Surface surface_of_triangle(const Scene *scene, Ray ray, Hit hit, mask ac
     real u = real_min(real_max(s.u, inset), 1 - 2 * inset);
     real v = real_min(real_max(s.v, inset), 1 - inset - u);
     s.p = v3_mad(e1, u, v3_mad(e2, v, p0));
+    s.uv = triangle_uv(scene, triangle, s.u, s.v);
     finish_surface(scene, ray, shading_normal(scene, corners, s.u, s.v, s.normal), mesh, &s);
     return s;
 }

@@ -1,5 +1,4 @@
 // dispatch: the texture of each lane, picked by kind (textures/NAME.cl for each row of textures/list.h).
-//   v3 texture_NAME_color(scene, at, uv)   linear RGB at `uv` of the textures whose records begin at word `at`
 #include "core/lanes.cl"
 #include "scene.cl"
 #include "shared/parameters.h"

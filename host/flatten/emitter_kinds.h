@@ -24,9 +24,10 @@ inline double power_of(const Light &light, double radius) {
 // Whether it emits nothing: such a light is left out.
 inline bool is_black(const Light &light) { return !(power_of(light, 1) > 0); }
 
-// The triangles of a mesh that emits.
+// The triangles of a mesh that emits; a sphere has none.
 struct EmittingMesh {
     const Mesh &mesh;
+    const Flattening &flattening;
     uint begin, end; // ids of its triangles
     const TriangleSoup &soup;
     const std::vector<uint> &slots; // of each triangle's vertices, by id: block * 8 + place in the block, as in a Hit

@@ -37,6 +37,13 @@ std::vector<uint> triangle_slots(const FlatScene &scene) {
     return slots;
 }
 
+// What emits where a mesh does.
+uint kind_of(const Shape &shape) {
+    return std::holds_alternative<Sphere>(shape)          ? EMITTER_sphere
+           : std::holds_alternative<Parallelogram>(shape) ? EMITTER_parallelogram
+                                                          : EMITTER_mesh;
+}
+
 class EmitterGatherer {
 public:
     EmitterGatherer(const SceneDescription &description, const Flattening &flattening, double radius,
@@ -50,7 +57,9 @@ public:
             while (end < scene_.triangles.size() && scene_.triangles[end].mesh == mesh)
                 end++;
             const auto &radiance = description_.meshes[mesh].radiance;
-            if (radiance && !is_black(*radiance) && begin != end)
+            const auto *sphere = std::get_if<Sphere>(&description_.meshes[mesh].shape);
+            const bool is_there = sphere ? has_area(flattening_.distance(sphere->radius)) : begin != end;
+            if (radiance && !is_black(*radiance) && is_there)
                 scene_.meshes[mesh].emitter = add_mesh(description_.meshes[mesh], begin, end);
         }
         for (const Light &light : description_.lights)
@@ -78,12 +87,15 @@ private:
         if (slots_.empty())
             slots_ = triangle_slots(scene_);
         const bool uniform = description_.strategy[AXIS_triangle_choice] == CHOICE_triangle_choice_uniform;
-        const EmittingMesh from{mesh, begin, end, soup_, slots_, uniform};
+        const EmittingMesh from{mesh, flattening_, begin, end, soup_, slots_, uniform};
         EmitterRecord record{};
-        const bool whole = std::holds_alternative<Parallelogram>(mesh.shape);
-        record.kind = whole ? EMITTER_parallelogram : EMITTER_mesh;
+        record.kind = kind_of(mesh.shape);
         record.two_sided = mesh.emits_on_both_sides;
-        const double area = whole ? flatten_parallelogram(from, record, scene_) : flatten_mesh(from, record, scene_);
+        double area = 0;
+#define OPAL_FLATTEN_MESH(name, traits)                                                                                \
+    if (record.kind == EMITTER_##name)                                                                                 \
+        area = flatten_##name(from, record, scene_);
+        OPAL_MESH_EMITTERS(OPAL_FLATTEN_MESH)
         return add(record, pi * luminance(*mesh.radiance) * area * (mesh.emits_on_both_sides ? 2 : 1));
     }
 

@@ -74,23 +74,29 @@ bool is_quadrilateral(const Point3f &a, const Point3f &b, const Point3f &c, cons
            std::min(ratio, 1.0) * std::sqrt(n2 / longest2) >= min_height * rounding * largest;
 }
 
-// Makes corner `by` the first one.
-template <class Corners> void rotate_corners(Corners &corners, int by) {
-    std::rotate(std::begin(corners), std::begin(corners) + by, std::end(corners));
+// Makes corner `by` of a triangle the first one.
+void rotate_corners(uint triangle, int by, TriangleSoup &soup, FlatScene &scene) {
+    const auto rotate = [by](auto &corners) {
+        std::rotate(std::begin(corners), std::begin(corners) + by, std::end(corners));
+    };
+    rotate(soup.corners[triangle]);
+    rotate(scene.triangles[triangle].normal);
+    if (!scene.triangle_uvs.empty()) {
+        float(&corners)[3][2] = scene.triangle_uvs[triangle].corner;
+        std::rotate(&corners[0][0], &corners[0][0] + 2 * by, &corners[0][0] + 6);
+    }
 }
 
 // Returns the face of both triangles if they make a quadrilateral, and rotates their corners to A B C and D C B; else
 // the face of the first triangle alone.
-Face make_face(uint first, uint second, TriangleSoup &soup, LargeVector<Triangle> &triangles) {
+Face make_face(uint first, uint second, TriangleSoup &soup, FlatScene &scene) {
     const auto corner = [&](uint id, int i) { return soup.vertices[soup.corners[id][size_t(i % 3)]]; };
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             if (corner(first, i + 1) == corner(second, j + 2) && corner(first, i + 2) == corner(second, j + 1) &&
                 is_quadrilateral(corner(first, i), corner(first, i + 1), corner(first, i + 2), corner(second, j))) {
-                rotate_corners(soup.corners[first], i);
-                rotate_corners(triangles[first].normal, i);
-                rotate_corners(soup.corners[second], j);
-                rotate_corners(triangles[second].normal, j);
+                rotate_corners(first, i, soup, scene);
+                rotate_corners(second, j, soup, scene);
                 return {first, second};
             }
     return {first, OPAL_NONE};
@@ -188,13 +194,13 @@ std::vector<uint> choose_face_list(const TriangleSoup &soup) {
     return chosen;
 }
 
-std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, LargeVector<Triangle> &triangles) {
+std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, FlatScene &scene) {
     std::vector<Face> faces;
     std::vector<uint> left = ids;
     while (!left.empty()) {
         Face face{left.front(), OPAL_NONE};
         for (size_t i = 1; i < left.size() && face.second == OPAL_NONE; i++) {
-            face = make_face(left.front(), left[i], soup, triangles);
+            face = make_face(left.front(), left[i], soup, scene);
             if (face.second != OPAL_NONE)
                 left.erase(left.begin() + std::ptrdiff_t(i));
         }

@@ -21,9 +21,9 @@ struct Face {
     uint first, second;
 };
 
-// Pairs the triangles `ids` into quadrilaterals where possible. Rotates the corners of each pair, in `soup` and in
-// `triangles`, so that they begin at A and at D.
-std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, LargeVector<Triangle> &triangles);
+// Pairs the triangles `ids` into quadrilaterals where possible. Rotates the corners of each pair, in `soup` and in the
+// scene's tables, so that they begin at A and at D.
+std::vector<Face> pair_up(const std::vector<uint> &ids, TriangleSoup &soup, FlatScene &scene);
 
 // Builds the tree over the primitives that are in no face of `faces`: fills scene.nodes, scene.sah_cost and the shapes'
 // blocks. Where all are in faces, the tree is a root without children, and there are no blocks.

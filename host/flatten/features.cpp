@@ -1,7 +1,6 @@
 #include "flatten/features.h"
 
 #include "flatten/distribution.h"
-#include "textures/list.h"
 
 #include <fmt/format.h>
 
@@ -122,6 +121,10 @@ public:
                        scene.triangles.size(), "triangle", "triangles");
     }
 
+    Decision uv() const {
+        return {!scene.textures.empty(), scene.textures.empty() ? "there are no textures" : "there are textures"};
+    }
+
     Decision hidden_emitters() const {
         return {description.hides_emitters && integrator.has(OPAL_ASKS_LIGHTS),
                 description.hides_emitters ? "the integrator hides emitters" : "rays of the camera see emitters"};
@@ -210,10 +213,11 @@ int find_emitter_choice(const SceneDescription &description, const FlatScene &sc
     return CHOICE_emitter_choice_uniform;
 }
 
-// The parameters of each kind of BSDF that have a texture on some mesh; all where it is decided at run time.
+// The parameters of each kind of BSDF that have a texture on some mesh; all where it is decided at run time and the
+// scene has textures at all.
 std::array<uint, BSDF_COUNT> find_textured(const FlatScene &scene, bool specialise) {
     std::array<uint, BSDF_COUNT> textured{};
-    if (TEXTURE_COUNT > 0 && !specialise)
+    if (!specialise && !scene.textures.empty())
         textured.fill(~0u);
     for (const MeshRecord &mesh : scene.meshes)
         visit_bsdfs(scene, mesh.bsdf, [&](uint at) {
@@ -281,7 +285,7 @@ Features find_features(const SceneDescription &description, const FlatScene &sce
         second_general = second_general || (is_second_general(i) && decisions[i].on);
     for (unsigned i = 0; i < FEATURE_COUNT; i++)
         features.list[i] =
-            specialise || i == FEATURE_endless_paths // a general kernel of its own
+            specialise || i == FEATURE_endless_paths || i == FEATURE_uv // general kernels of their own
                 ? Feature{decisions[i].on, decisions[i].reason}
                 : Feature{general_has(i, lanes) && (second_general || !is_second_general(i)), "the general kernel"};
     for (int axis = 0; axis < AXIS_COUNT; axis++) {

@@ -8,6 +8,7 @@
 #include "flatten/features.h"
 #include "flatten/geometry.h"
 #include "flatten/store.h"
+#include "flatten/textures.h"
 #include "scene/filter.h"
 
 #include <fmt/format.h>
@@ -88,7 +89,8 @@ std::vector<uint> words_with_hemisphere(const Bsdf &bsdf, int hemisphere) {
 
 class BsdfGatherer {
 public:
-    BsdfGatherer(int hemisphere, LargeVector<uint> &table) : hemisphere_(hemisphere), table_(table) {}
+    BsdfGatherer(int hemisphere, FlatScene &scene)
+        : hemisphere_(hemisphere), table_(scene.bsdfs), textures_(scene.textures, scene.texels) {}
 
     // Returns the first word of the record. BSDFs come after those that they lead to.
     uint add(const Bsdf &bsdf) {
@@ -97,6 +99,8 @@ public:
         for (const Parameter &parameter : bsdf_parameters(bsdf.kind()))
             if (parameter.type == ParameterType::BSDF)
                 words[parameter.word] = add(*child++);
+        for (const auto &[word, texture] : bsdf.textures)
+            words[word] = textures_.add(texture);
         const auto [found, is_new] = known_.try_emplace(words, uint(table_.size()));
         if (is_new)
             table_.insert(table_.end(), words.begin(), words.end());
@@ -106,11 +110,12 @@ public:
 private:
     int hemisphere_;
     LargeVector<uint> &table_;
+    TextureGatherer textures_;
     std::map<std::vector<uint>, uint> known_; // first word of each record
 };
 
 void gather_bsdfs(const SceneDescription &description, FlatScene &scene) {
-    BsdfGatherer gatherer(description.strategy[AXIS_hemisphere], scene.bsdfs);
+    BsdfGatherer gatherer(description.strategy[AXIS_hemisphere], scene);
     for (const Mesh &mesh : description.meshes)
         scene.meshes.push_back({gatherer.add(mesh.bsdf), OPAL_NONE});
         // Lanes that are not meant read records of other kinds as far as the longest one reaches.
@@ -149,7 +154,7 @@ void build_acceleration(TriangleSoup &soup, const std::optional<std::vector<Poin
     const std::vector<uint> ids = choose_face_list(soup);
     // Triangles are paired at every width: pairing renumbers corners, and sampled points of lights depend on their
     // order.
-    std::vector<Face> faces = pair_up(ids, soup, scene.triangles);
+    std::vector<Face> faces = pair_up(ids, soup, scene);
     if (!with_face_list)
         faces.clear();
     if (always_tree || faces.empty() || ids.size() < soup.corners.size() || !soup.others.empty())

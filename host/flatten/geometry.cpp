@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <span>
 
@@ -24,7 +26,9 @@ bool has_normal(const Point3f &a, const Point3f &b, const Point3f &c) {
 
 class PrimitiveGatherer {
 public:
-    PrimitiveGatherer(const Flattening &flattening, FlatScene &scene) : flattening_(flattening), scene_(scene) {}
+    // with_uv: does the scene have textures?
+    PrimitiveGatherer(const Flattening &flattening, bool with_uv, FlatScene &scene)
+        : flattening_(flattening), with_uv_(with_uv), scene_(scene) {}
 
     void add(const Mesh &mesh, uint index) {
         mesh_ = index;
@@ -37,8 +41,14 @@ public:
 
 private:
     const Flattening &flattening_;
+    const bool with_uv_;
     FlatScene &scene_;
     uint mesh_ = 0; // index of the current one
+
+    void drop() {
+        if (dropped++ == 0)
+            first_dropped = mesh_;
+    }
 
     // What each kind of shape is to the device.
 
@@ -47,24 +57,59 @@ private:
         for (Vec3 normal : mesh.normals)
             for (double component : {normal.x, normal.y, normal.z})
                 scene_.normals.push_back(float(component));
-        for (const auto &triangle : mesh.triangles) {
+        for (size_t i = 0; i < mesh.triangles.size(); i++) {
+            const auto &triangle = mesh.triangles[i];
             // Interpolation needs three normals: a triangle that lacks one is flat.
             const bool smooth =
                 triangle[0].normal != OPAL_NONE && triangle[1].normal != OPAL_NONE && triangle[2].normal != OPAL_NONE;
             std::array<uint, 3> normals{OPAL_NONE, OPAL_NONE, OPAL_NONE};
-            for (int i = 0; i < 3 && smooth; i++)
-                normals[i] = first_normal + triangle[i].normal;
-            add_triangle(first, {triangle[0].position, triangle[1].position, triangle[2].position}, normals);
+            for (int k = 0; k < 3 && smooth; k++)
+                normals[k] = first_normal + triangle[k].normal;
+            add_triangle(first, {triangle[0].position, triangle[1].position, triangle[2].position}, normals,
+                         uv_of(mesh, i));
         }
     }
 
     void add_primitives(const Parallelogram &shape) {
         const uint first = add_vertices(shape.corners());
-        add_triangle(first, {0, 1, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE});
-        add_triangle(first, {1, 3, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE});
+        add_triangle(first, {0, 1, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE}, {{{0, 0}, {1, 0}, {0, 1}}});
+        add_triangle(first, {1, 3, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE}, {{{1, 0}, {1, 1}, {0, 1}}});
     }
 
-    void add_primitives(const Sphere &) {}
+    // A triangle without texture coordinates has its barycentric ones.
+    static TriangleUv uv_of(const TriangleMesh &mesh, size_t triangle) {
+        TriangleUv uv = {{{0, 0}, {1, 0}, {0, 1}}};
+        if (mesh.uv_corners.empty())
+            return uv;
+        const std::array<unsigned, 3> &corners = mesh.uv_corners[triangle];
+        if (std::ranges::find(corners, OPAL_NONE) == corners.end())
+            for (size_t i = 0; i < 3; i++)
+                std::ranges::copy(mesh.uvs[corners[i]], uv.corner[i]);
+        return uv;
+    }
+
+    void add_primitives(const Sphere &sphere) {
+        const uint id = SHAPE_sphere << OPAL_SHAPE_SHIFT | uint(scene_.sphere_blocks.size());
+        const Point3f center = flattening_(sphere.center);
+        SphereBlock block{};
+        block.radius[0] = flattening_.distance(sphere.radius);
+        if (!has_area(block.radius[0])) {
+            drop();
+            return;
+        }
+        block.inward[0] = sphere.inward;
+        block.mesh[0] = mesh_;
+        block.id[0] = id;
+        Box box;
+        for (int axis = 0; axis < 3; axis++) {
+            block.center[axis][0] = center[axis];
+            // The next float holds the end of the box, which is rounded.
+            box.lo[axis] = std::nextafter(center[axis] - block.radius[0], -Box::infinity);
+            box.hi[axis] = std::nextafter(center[axis] + block.radius[0], Box::infinity);
+        }
+        scene_.sphere_blocks.push_back(block);
+        soup.others.push_back({id, box, mesh_});
+    }
 
     // Returns the index of the first one.
     uint add_vertices(std::span<const Vec3> positions) {
@@ -75,16 +120,17 @@ private:
     }
 
     // corners: counted from the vertex `first`
-    void add_triangle(uint first, std::array<uint, 3> corners, std::array<uint, 3> normals) {
+    void add_triangle(uint first, std::array<uint, 3> corners, std::array<uint, 3> normals, const TriangleUv &uv) {
         for (uint &corner : corners)
             corner += first;
         if (!has_normal(soup.vertices[corners[0]], soup.vertices[corners[1]], soup.vertices[corners[2]])) {
-            if (dropped++ == 0)
-                first_dropped = mesh_;
+            drop();
             return;
         }
         soup.corners.push_back(corners);
         scene_.triangles.push_back({{normals[0], normals[1], normals[2]}, mesh_});
+        if (with_uv_)
+            scene_.triangle_uvs.push_back(uv);
     }
 };
 
@@ -122,7 +168,8 @@ Flattening find_flattening(const Extent &extent) {
 
 TriangleSoup gather_primitives(const SceneDescription &description, const Flattening &flattening, FlatScene &scene,
                                const std::function<void(uint)> &on_gathered) {
-    PrimitiveGatherer gatherer(flattening, scene);
+    const bool with_uv = is_textured(description);
+    PrimitiveGatherer gatherer(flattening, with_uv, scene);
     std::size_t vertices = 0, normals = 0, triangles = 0;
     for (const Mesh &mesh : description.meshes)
         if (const auto *shape = std::get_if<TriangleMesh>(&mesh.shape)) {
@@ -134,17 +181,21 @@ TriangleSoup gather_primitives(const SceneDescription &description, const Flatte
     gatherer.soup.corners.reserve(triangles);
     scene.normals.reserve(3 * normals);
     scene.triangles.reserve(triangles);
+    scene.triangle_uvs.reserve(with_uv ? triangles : 0);
     for (uint mesh = 0; mesh < description.meshes.size(); mesh++) {
         gatherer.add(description.meshes[mesh], mesh);
         on_gathered(mesh);
     }
     if (gatherer.dropped > 0) {
         const Mesh &first = description.meshes[gatherer.first_dropped];
-        warn(fmt::format("{}{} of {} triangles dropped: no area is left of them in single precision, which rounds "
-                         "coordinates to {:.0e} of the scene's size; the first is one of {}",
-                         first.place.line ? first.place.text() + ": " : "", gatherer.dropped,
-                         gatherer.soup.corners.size() + gatherer.dropped, std::numeric_limits<float>::epsilon() / 2,
-                         first.name.empty() ? "a mesh without a name" : first.name));
+        warn(fmt::format(
+            "{}{} of {} {} dropped: no area is left of them in single precision, which rounds "
+            "coordinates to {:.0e} of the scene's size; the first is one of {}",
+            first.place.line ? first.place.text() + ": " : "", gatherer.dropped,
+            gatherer.soup.corners.size() + gatherer.soup.others.size() + gatherer.dropped,
+            std::holds_alternative<Sphere>(first.shape) || !gatherer.soup.others.empty() ? "triangles and spheres"
+                                                                                         : "triangles",
+            std::numeric_limits<float>::epsilon() / 2, first.name.empty() ? "a mesh without a name" : first.name));
     }
     return std::move(gatherer.soup);
 }

@@ -226,14 +226,16 @@ bool hide_each_other(const Face &a, const Face &b) {
             wedge.holds(other.to));
 }
 
-// All triangles of a scene; parallelograms are two each.
+// All triangles of a scene; parallelograms are two each, spheres have none.
 class Faces {
 public:
     explicit Faces(const SceneDescription &scene) : scene_(scene) {
         for (const Mesh &mesh : scene.meshes) {
             const auto *triangles = std::get_if<TriangleMesh>(&mesh.shape);
             starts_.push_back(count_);
-            count_ += triangles ? triangles->triangles.size() : 2;
+            count_ += triangles                                           ? triangles->triangles.size()
+                      : std::holds_alternative<Parallelogram>(mesh.shape) ? 2
+                                                                          : 0;
         }
     }
 

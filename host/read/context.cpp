@@ -1,7 +1,6 @@
 #include "read/context.h"
 
 #include "base/log.h"
-#include "read/nori/names.h"
 
 #include <fmt/format.h>
 
@@ -61,7 +60,7 @@ void ParseContext::unknown(const XmlNode &node, const std::string &message) cons
 bool ParseContext::require_attributes(const XmlNode &node, std::initializer_list<const char *> names,
                                       std::initializer_list<const char *> optional) const {
     const auto take_unknown = [&](const std::string &name, const std::string &message) {
-        if (is_leftover_attribute(node, name))
+        if (is_leftover && is_leftover(node, name))
             note(fmt::format("{}: attribute '{}' of <{}> means nothing here", node.place().text(), name, node.tag()));
         else
             unknown(node, message);

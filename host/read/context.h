@@ -42,13 +42,15 @@ struct ParseContext {
     Mistakes *mistakes = nullptr;     // gathers mistakes; null: the first one is thrown
     std::optional<Dialect> dialect{}; // nothing: a scene's names tell it
     FileHashes *hashes = nullptr;     // gets those of the files that are read; null: nobody asks
+    // Is it an attribute that means nothing in this format, and gets a note? null: there is none.
+    bool (*is_leftover)(const XmlNode &node, const std::string &attribute) = nullptr;
 
     void mistake(const SourcePlace &place, const std::string &message) const;
     void mistake(const XmlNode &node, const std::string &message) const { mistake(node.place(), message); }
     MistakeHandler handler() const;
     // A name that Opal does not know: a mistake, or a warning if lenient.
     void unknown(const XmlNode &node, const std::string &message) const;
-    // As XmlNode::require_attributes. Leftovers (names.h) get a note.
+    // As XmlNode::require_attributes. Leftovers get a note.
     bool require_attributes(const XmlNode &node, std::initializer_list<const char *> names,
                             std::initializer_list<const char *> optional = {}) const;
 

@@ -54,6 +54,10 @@ bool Bsdf::leads_to(uint wanted) const {
            std::any_of(children.begin(), children.end(), [&](const Bsdf &child) { return child.leads_to(wanted); });
 }
 
+bool Bsdf::is_textured() const {
+    return !textures.empty() || std::ranges::any_of(children, [](const Bsdf &child) { return child.is_textured(); });
+}
+
 const char *camera_name(unsigned kind) {
 #define OPAL_CAMERA_NAME(name, record, traits) #name,
     static const char *const names[] = {OPAL_CAMERAS(OPAL_CAMERA_NAME)};
@@ -80,6 +84,10 @@ std::string camera_text(const Camera &camera) {
 bool has_light(const SceneDescription &scene) {
     return !scene.lights.empty() ||
            std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh &mesh) { return mesh.radiance; });
+}
+
+bool is_textured(const SceneDescription &scene) {
+    return std::ranges::any_of(scene.meshes, [](const Mesh &mesh) { return mesh.bsdf.is_textured(); });
 }
 
 const Light *light_missed_by_bsdfs(const SceneDescription &scene) {

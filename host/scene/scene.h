@@ -10,6 +10,7 @@
 #include "scene/place.h"
 #include "scene/shapes.h"
 #include "scene/strategy.h"
+#include "scene/textures.h"
 #include "shared/types.h"
 
 #include <filesystem>
@@ -39,8 +40,9 @@ const char *camera_name(unsigned kind); // kind: CAMERA_*
 // A material: the record of its kind, ready for the device but for the places of the BSDFs that it leads to. By default
 // a grey diffuse one.
 struct Bsdf {
-    std::vector<uint> words;    // of a bsdf_NAME_record
-    std::vector<Bsdf> children; // of its parameters of type BSDF, in their order
+    std::vector<uint> words;            // of a bsdf_NAME_record
+    std::vector<Bsdf> children;         // of its parameters of type BSDF, in their order
+    std::map<size_t, Texture> textures; // what multiplies parameters, by Parameter::texture_word
     SourcePlace place;
 
     Bsdf() : Bsdf(bsdf_diffuse_record{}) {}
@@ -49,6 +51,7 @@ struct Bsdf {
     uint kind() const { return words[0]; } // BSDF_*
     unsigned traits() const;               // OPAL_SMOOTH and so on, as bits; those of its children where it has some
     bool leads_to(uint kind) const;        // is of that kind, or a BSDF within it is
+    bool is_textured() const;              // or a BSDF within it is
     template <class Record> bool is() const { return kind() == Record{}.kind; }
     template <class Record> Record as() const { return record_of<Record>(words); } // is<Record>() must hold
 };
@@ -124,7 +127,8 @@ struct SceneDescription {
     std::vector<PluginUse> plugins; // of a file of Mitsuba, in the order of their first use
 };
 
-bool has_light(const SceneDescription &scene); // an emitter of any kind
+bool has_light(const SceneDescription &scene);   // an emitter of any kind
+bool is_textured(const SceneDescription &scene); // has a texture on something
 
 // The first light that no BSDF sample can hit, or null.
 const Light *light_missed_by_bsdfs(const SceneDescription &scene);

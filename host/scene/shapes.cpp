@@ -128,4 +128,21 @@ Sphere Sphere::moved(const Transform &by) const {
 
 std::string Sphere::text() const { return "sphere"; }
 
+std::string why_no_sphere(const Transform &transform) {
+    constexpr double rounding = 1e-4; // relative: of files that give a matrix in few digits
+    const Vec3 x = transform.vector({1, 0, 0}), y = transform.vector({0, 1, 0}), z = transform.vector({0, 0, 1});
+    const double a = length(x), b = length(y), c = length(z), most = std::max({a, b, c});
+    if (!std::isfinite(a + b + c) || transform.rows[3] != Transform().rows[3])
+        return "no sphere stays a sphere under this matrix";
+    if (!(std::abs(transform.determinant()) > rounding * a * b * c))
+        return "is singular: nothing is left of the sphere";
+    if (!(std::min({a, b, c}) >= (1 - rounding) * most))
+        return fmt::format("scales a sphere by {:.4g}, {:.4g} and {:.4g} along its axes; possible: the same scale "
+                           "along all, or a mesh",
+                           a, b, c);
+    if (!(std::max({std::abs(dot(x, y)), std::abs(dot(y, z)), std::abs(dot(z, x))}) <= rounding * most * most))
+        return "shears a sphere; possible: rotations, translations and one scale, or a mesh";
+    return {};
+}
+
 } // namespace opal

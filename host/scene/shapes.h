@@ -62,6 +62,9 @@ struct Sphere {
     std::string text() const;
 };
 
+// Why a transform makes no sphere of a sphere, for a message; empty: it is a similarity, which may mirror.
+std::string why_no_sphere(const Transform &transform);
+
 using Shape = std::variant<TriangleMesh, Parallelogram, Sphere>;
 
 } // namespace opal

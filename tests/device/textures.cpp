@@ -1,10 +1,12 @@
-// Textures on the parameters of BSDFs. The renderer has no kind of texture yet: this test adds one to the sources.
+// Textures on the parameters of BSDFs. Some tests add a kind of texture to the sources.
 #include "support/probe.h"
 #include "textures/list.h"
 
 #include <catch2/catch.hpp>
 
+#include <array>
 #include <bit>
+#include <memory>
 #include <numbers>
 
 using namespace opal;
@@ -76,4 +78,118 @@ TEST_CASE("The program says which parameters have a texture", "[textures]") {
     CHECK_THAT(text, Catch::Contains("#define OPAL_TEXTURED_bsdf_diffuse 1\n") &&
                          Catch::Contains("#define OPAL_TEXTURED_bsdf_phong 8\n") &&
                          Catch::Contains("#define OPAL_TEXTURED_bsdf_microfacet 0\n"));
+}
+
+TEST_CASE("A checkerboard has two by two squares, as Mitsuba has it", "[textures]") {
+    struct Lookup {
+        double u, v, value;
+    };
+    // Mitsuba 3.9.1; the end of the first half belongs to it.
+    const std::vector<Lookup> lookups = {{0.1, 0.1, 0.4},  {0.6, 0.1, 0.2}, {0.1, 0.6, 0.2}, {0.6, 0.6, 0.4},
+                                         {-0.1, 0.1, 0.2}, {1.1, 0.1, 0.4}, {0.5, 0.1, 0.4}, {0.5, 0.6, 0.2}};
+    std::vector<Bsdf> materials(lookups.size(), Bsdf(bsdf_diffuse_record{.albedo = 1}));
+    const size_t albedo = bsdf_parameters(BSDF_diffuse)[0].texture_word;
+    for (size_t i = 0; i < lookups.size(); i++) // the probe asks at (0, 0)
+        materials[i].textures[albedo] = CheckerboardTexture{.to_uv = {{{5, 0, lookups[i].u}, {0, 5, lookups[i].v}}}};
+    const FlatScene scene = scene_of_bsdfs(materials);
+    for (int lanes : tested_lanes()) {
+        KernelProbe probe = probe_of(scene, lanes, Sources::embedded());
+        for (size_t i = 0; i < lookups.size(); i++) {
+            INFO(lanes << " lanes, uv " << lookups[i].u << " " << lookups[i].v);
+            const Planes f = probe.bsdf_eval(unsigned(i), {0, 0, 1}, std::vector{Vec3{0, 0, 1}});
+            CHECK(f.at(EVAL_R, 0) == Approx(lookups[i].value / std::numbers::pi));
+        }
+    }
+}
+
+TEST_CASE("A bitmap is looked up as Mitsuba does it", "[textures]") {
+    // Mitsuba 3.9.1: an image of 4 x 2 pixels, rows from the top; red and green of the look-ups at `at`.
+    const auto picture = std::make_shared<Picture>();
+    picture->width = 4;
+    picture->height = 2;
+    picture->channels = 3;
+    for (float v : {0.f, 1.f})
+        for (float u : {0.f, 1.f, 2.f, 3.f})
+            for (float value : {0.125f + 0.125f * u, 0.25f + 0.25f * v, 0.0625f * u + 0.25f * v})
+                picture->floats.push_back(value);
+    const std::vector<std::array<double, 2>> at = {
+        {0.125, 0.25}, {0.125, 0.75}, {0.375, 0.25}, {0.25, 0.25}, {0.25, 0.5}, {0, 0},     {0.01, 0.25}, {0.99, 0.25},
+        {0.125, 0.01}, {0.125, 0.99}, {1.1, 0.25},   {-0.1, 0.25}, {-1.1, 0.3}, {2.3, 1.4}, {0.5, 0.5},   {0.77, 0.62}};
+    struct Lookups {
+        uint wrap;
+        bool nearest;
+        std::vector<double> red, green;
+    };
+    const std::vector<Lookups> table = {
+        {WRAP_repeat,
+         false,
+         {0.125, 0.125, 0.25, 0.1875, 0.1875, 0.3125, 0.2975, 0.3275, 0.125, 0.125, 0.1625, 0.4625, 0.4625, 0.2125,
+          0.3125, 0.4475},
+         {0.25, 0.5, 0.25, 0.25, 0.375, 0.375, 0.25, 0.25, 0.37, 0.38, 0.25, 0.25, 0.275, 0.325, 0.375, 0.435}},
+        {WRAP_repeat,
+         true,
+         {0.125, 0.125, 0.25, 0.25, 0.25, 0.125, 0.125, 0.5, 0.125, 0.125, 0.125, 0.5, 0.5, 0.25, 0.375, 0.5},
+         {0.25, 0.5, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25, 0.25, 0.5, 0.5}},
+        {WRAP_mirror,
+         false,
+         {0.125, 0.125, 0.25, 0.1875, 0.1875, 0.125, 0.125, 0.5, 0.125, 0.125, 0.5, 0.125, 0.5, 0.2125, 0.3125, 0.4475},
+         {0.25, 0.5, 0.25, 0.25, 0.375, 0.25, 0.25, 0.25, 0.25, 0.5, 0.25, 0.25, 0.275, 0.425, 0.375, 0.435}},
+        {WRAP_mirror,
+         true,
+         {0.125, 0.125, 0.25, 0.25, 0.25, 0.125, 0.125, 0.5, 0.125, 0.125, 0.5, 0.125, 0.5, 0.25, 0.375, 0.5},
+         {0.25, 0.5, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25, 0.5, 0.5, 0.5}},
+        {WRAP_clamp,
+         false,
+         {0.125, 0.125, 0.25, 0.1875, 0.1875, 0.125, 0.125, 0.5, 0.125, 0.125, 0.5, 0.125, 0.125, 0.5, 0.3125, 0.4475},
+         {0.25, 0.5, 0.25, 0.25, 0.375, 0.25, 0.25, 0.25, 0.25, 0.5, 0.25, 0.25, 0.275, 0.5, 0.375, 0.435}},
+        {WRAP_clamp,
+         true,
+         {0.125, 0.125, 0.25, 0.25, 0.25, 0.125, 0.125, 0.5, 0.125, 0.125, 0.5, 0.125, 0.125, 0.5, 0.375, 0.5},
+         {0.25, 0.5, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25, 0.5, 0.5, 0.5}},
+    };
+    std::vector<Bsdf> materials;
+    const size_t albedo = bsdf_parameters(BSDF_diffuse)[0].texture_word;
+    for (const Lookups &lookups : table)
+        for (const auto &[u, v] : at) { // the probe asks at (0, 0)
+            Bsdf &material = materials.emplace_back(bsdf_diffuse_record{.albedo = 1});
+            material.textures[albedo] = BitmapTexture{.picture = picture,
+                                                      .nearest = lookups.nearest,
+                                                      .wrap = lookups.wrap,
+                                                      .to_uv = {{{1, 0, u}, {0, 1, v}}}};
+        }
+    const FlatScene scene = scene_of_bsdfs(materials);
+    for (int lanes : tested_lanes()) {
+        KernelProbe probe = probe_of(scene, lanes, Sources::embedded());
+        for (size_t i = 0; i < materials.size(); i++) {
+            const Lookups &lookups = table[i / at.size()];
+            const size_t k = i % at.size();
+            INFO(lanes << " lanes, wrap " << lookups.wrap << (lookups.nearest ? " nearest" : "") << ", uv " << at[k][0]
+                       << " " << at[k][1]);
+            const Planes f = probe.bsdf_eval(unsigned(i), {0, 0, 1}, std::vector{Vec3{0, 0, 1}});
+            CHECK(f.at(EVAL_R, 0) * std::numbers::pi == Approx(lookups.red[k]).margin(1e-6));
+            CHECK(f.at(EVAL_G, 0) * std::numbers::pi == Approx(lookups.green[k]).margin(1e-6));
+        }
+    }
+}
+
+TEST_CASE("Bytes of a bitmap are decoded from sRGB unless it is raw", "[textures]") {
+    const auto picture = std::make_shared<Picture>();
+    picture->width = 3; // of one channel: the bytes do not fill words
+    picture->height = 1;
+    picture->channels = 1;
+    picture->bytes = {60, 128, 255};
+    picture->encoded = true;
+    const std::vector<double> decoded = {0.04518617, 0.2158604, 1}, raw = {0.2352941, 0.5019608, 1}; // Mitsuba 3.9.1
+    std::vector<Bsdf> materials;
+    for (const bool is_raw : {false, true})
+        for (int i = 0; i < 3; i++) {
+            Bsdf &material = materials.emplace_back(bsdf_diffuse_record{.albedo = 1});
+            material.textures[bsdf_parameters(BSDF_diffuse)[0].texture_word] = BitmapTexture{
+                .picture = picture, .raw = is_raw, .nearest = true, .to_uv = {{{1, 0, (i + 0.5) / 3}, {0, 1, 0.5}}}};
+        }
+    KernelProbe probe = probe_of(scene_of_bsdfs(materials), device().info.native_lanes, Sources::embedded());
+    for (unsigned i = 0; i < materials.size(); i++) {
+        const Planes f = probe.bsdf_eval(i, {0, 0, 1}, std::vector{Vec3{0, 0, 1}});
+        CHECK(f.at(EVAL_B, 0) * std::numbers::pi == Approx(i < 3 ? decoded[i] : raw[i - 3]).margin(1e-6));
+    }
 }

@@ -46,7 +46,7 @@ const std::vector<Room> rooms = {
     {"stats", {"base"}},
     {"plot", {"base", "image"}},
     {"scene", {"base", "cl"}},
-    {"read", {"base", "cl", "scene"}},
+    {"read", {"base", "cl", "image", "scene"}},
     {"read/nori", {"base", "cl", "scene", "read"}},
     {"read/mitsuba", {"base", "cl", "scene", "read"}},
     {"read/formats", {"base", "scene", "read", "read/nori", "read/mitsuba"}},

@@ -65,7 +65,8 @@ Object::Property *Object::ask(const std::string &name, std::initializer_list<con
     Property *property = ask(name);
     if (!property || std::holds_alternative<std::monostate>(property->value))
         return nullptr;
-    const std::string tag = property->node.tag();
+    const bool is_transform = std::holds_alternative<std::unique_ptr<Transform>>(property->value); // of an old uscale
+    const std::string tag = is_transform ? "transform" : property->node.tag();
     const bool is_object = std::holds_alternative<Object *>(property->value);
     if (!is_object && std::ranges::any_of(tags, [&](const char *wanted) { return tag == wanted; }))
         return property;

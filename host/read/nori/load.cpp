@@ -67,6 +67,7 @@ ParseContext context_for(const std::filesystem::path &file, const LoadOptions &o
     // Names in a scene that comes by /dev/stdin are of the current folder.
     ParseContext context{descriptor_of(file) ? std::filesystem::path() : file.parent_path(), options.lenient,
                          &mistakes};
+    context.is_leftover = is_leftover_attribute;
     if (options.dialect != "auto")
         context.dialect = Dialect(&find_row(dialects(), "dialect", options.dialect) - dialects().data());
     return context;

@@ -1,4 +1,4 @@
-// Parsers of meshes: triangles of an OBJ or PLY file, and parallelograms.
+// Parsers of meshes: triangles of an OBJ or PLY file, parallelograms and spheres.
 #include "base/error.h"
 #include "base/log.h"
 #include "read/nori/parsers.h"
@@ -82,6 +82,17 @@ std::vector<Mesh> parse_parallelogram(Properties &properties, MeshStart start) {
     return {std::move(start.mesh)};
 }
 
+std::vector<Mesh> parse_sphere(Properties &properties, MeshStart start) {
+    Sphere sphere;
+    sphere.center = properties.point("center").value_or(sphere.center);
+    sphere.radius = properties.number("radius").value_or(sphere.radius);
+    properties.check(sphere.radius > 0 && std::isfinite(sphere.radius), "radius", "must be above 0");
+    const std::string fault = why_no_sphere(start.to_world);
+    properties.check(fault.empty(), "toWorld", fault);
+    start.mesh.shape = sphere.moved(start.to_world);
+    return {std::move(start.mesh)};
+}
+
 // Whether the transform turns the normals round: those of faces, which follow from the order of the corners. Normals of
 // corners stay on their side.
 bool is_turned_by(const Transform &to_world, const Shape &shape) {
@@ -95,7 +106,7 @@ struct ShapeType {
 };
 
 const std::vector<ShapeType> shape_types = {
-    {"obj", parse_obj}, {"ply", parse_ply}, {"parallelogram", parse_parallelogram}};
+    {"obj", parse_obj}, {"ply", parse_ply}, {"parallelogram", parse_parallelogram}, {"sphere", parse_sphere}};
 
 } // namespace
 

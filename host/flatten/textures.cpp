@@ -1,0 +1,94 @@
+#include "flatten/textures.h"
+
+#include "base/error.h"
+#include "flatten/store.h"
+#include "scene/parameters.h"
+#include "shared/types.h"
+#include "textures/list.h"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace opal {
+namespace {
+
+void store_map(const UvTransform &map, float (&words)[2][3]) {
+    for (int row = 0; row < 2; row++)
+        for (int column = 0; column < 3; column++)
+            words[row][column] = float(map[row][column]);
+}
+
+// The linear value of a number that sRGB encodes (IEC 61966-2-1).
+double srgb_decode(double x) { return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4); }
+
+constexpr uint byte_values = 256;
+
+} // namespace
+
+std::vector<uint> TextureGatherer::words(const CheckerboardTexture &texture) {
+    texture_checkerboard_record record{};
+    record.kind = TEXTURE_checkerboard;
+    store_map(texture.to_uv, record.to_uv);
+    store(texture.color0, 1, record.color0);
+    store(texture.color1, 1, record.color1);
+    return words_of(record);
+}
+
+std::vector<uint> TextureGatherer::words(const BitmapTexture &texture) {
+    const Picture &picture = *texture.picture;
+    const auto [first, decode] = place_of(picture, picture.encoded && !texture.raw);
+    texture_bitmap_record record{};
+    record.kind = TEXTURE_bitmap;
+    store_map(texture.to_uv, record.to_uv);
+    record.width = uint(picture.width);
+    record.height = uint(picture.height);
+    record.channels = uint(picture.channels);
+    record.first = first;
+    record.decode = decode;
+    record.wrap = texture.wrap;
+    record.nearest = texture.nearest;
+    return words_of(record);
+}
+
+// The texels begin with two tables, the values of bytes as numbers and as sRGB means them. Bytes of all pictures follow
+// as the files have them, floats are decoded.
+TextureGatherer::Place TextureGatherer::place_of(const Picture &picture, bool encoded) {
+    if (texels_.empty())
+        for (const bool curve : {false, true})
+            for (uint byte = 0; byte < byte_values; byte++)
+                texels_.push_back(std::bit_cast<uint>(float(curve ? srgb_decode(byte / 255.0) : byte / 255.0)));
+    const bool has_bytes = !picture.bytes.empty();
+    const auto [found, is_new] = pictures_.try_emplace({&picture, encoded && !has_bytes});
+    if (is_new) {
+        const std::size_t bytes = has_bytes ? picture.bytes.size() : sizeof(float) * picture.floats.size();
+        const std::size_t first = texels_.size();
+        if (sizeof(uint) * first + bytes > std::numeric_limits<uint>::max())
+            throw Error("the textures have more than 4 GiB of texels together");
+        texels_.resize(first + (bytes + sizeof(uint) - 1) / sizeof(uint));
+        if (has_bytes) {
+            std::memcpy(&texels_[first], picture.bytes.data(), bytes);
+        } else {
+            for (std::size_t i = 0; i < picture.floats.size(); i++) {
+                const float value = picture.floats[i];
+                texels_[first + i] = std::bit_cast<uint>(encoded ? float(srgb_decode(value)) : value);
+            }
+        }
+        found->second = {uint(has_bytes ? sizeof(uint) * first : first), OPAL_NONE};
+    }
+    Place place = found->second;
+    if (has_bytes)
+        place.decode = encoded ? byte_values : 0;
+    return place;
+}
+
+uint TextureGatherer::add(const Texture &texture) {
+    const std::vector<uint> record = std::visit([this](const auto &own) { return words(own); }, texture);
+    const auto [found, is_new] = known_.try_emplace(record, uint(table_.size()));
+    if (is_new)
+        table_.insert(table_.end(), record.begin(), record.end());
+    return found->second;
+}
+
+} // namespace opal

@@ -1,0 +1,43 @@
+// The textures of materials, in double precision.
+#pragma once
+
+#include "base/color.h"
+#include "textures/list.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace opal {
+
+// The map from a surface's texture coordinates (u, v, 1) to the texture's own.
+using UvTransform = std::array<std::array<double, 3>, 2>;
+constexpr UvTransform identity_uv = {{{1, 0, 0}, {0, 1, 0}}};
+
+struct CheckerboardTexture { // two by two squares in the unit square
+    Color color0{0.4, 0.4, 0.4}, color1{0.2, 0.2, 0.2};
+    UvTransform to_uv = identity_uv;
+};
+
+// The values of an image file: rows from the top, `channels` values a pixel, 1 (grey) or 3 (R, G, B; Rec. 709).
+struct Picture {
+    int width = 0, height = 0, channels = 0;
+    std::vector<std::uint8_t> bytes; // of an image of 8 bits, as the file has them
+    std::vector<float> floats;       // of others: linear, or in [0, 1] as the file has them
+    bool encoded = false;            // whether the file means values of sRGB's curve
+};
+
+struct BitmapTexture {
+    std::shared_ptr<const Picture> picture;
+    bool raw = false; // the values are numbers, whatever the file means
+    bool nearest = false;
+    uint wrap = WRAP_repeat;
+    UvTransform to_uv = identity_uv;
+};
+
+using Texture = std::variant<CheckerboardTexture, BitmapTexture>;
+
+} // namespace opal
