@@ -128,6 +128,7 @@ const std::string mitsuba_scene = "<scene version='3.0.0'>", in_sensor = "<senso
                   in_film = in_sensor + "<film type='hdrfilm'>";
 const std::vector<Kind> mitsuba_kinds = {
     {"", "shape", mitsuba_scene, "</scene>", "shape"},
+    {"", "texture", mitsuba_scene, "</scene>", "texture"},
     {"", "bsdf", mitsuba_scene, "</scene>", "bsdf"},
     {"", "emitter", mitsuba_scene, "</scene>", "emitter"},
     {"", "sensor", mitsuba_scene, "</scene>", "sensor"},

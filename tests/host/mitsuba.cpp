@@ -1,6 +1,7 @@
 // Scenes of Mitsuba: what each object becomes, and the errors. The figures are those that Mitsuba 3.9.1 has.
 #include "base/log.h"
 #include "base/table.h"
+#include "image/image.h"
 #include "read/load.h"
 #include "scene/options.h"
 #include "support/error_of.h"
@@ -609,7 +610,7 @@ TEST_CASE_METHOD(MitsubaFixture, "plug-ins that Opal does not have are all named
     const std::string body = "<shape type='cylinder'/>\n<shape type='cylinder'><bsdf type='plastic'/></shape>\n"
                              "<bsdf type='plastic' id='b'/>\n<emitter type='envmap'><string name='filename' value='x'/>"
                              "</emitter>\n<medium type='homogeneous' id='m'/>\n"
-                             "<shape type='sphere'><bsdf type='diffuse'><texture name='reflectance' type='bitmap'>"
+                             "<shape type='sphere'><bsdf type='diffuse'><texture name='reflectance' type='volume'>"
                              "<string name='filename' value='x.png'/></texture></bsdf></shape>\n"
                              "<integrator type='ptracer'/><sensor type='batch'/>\n"
                              "<sensor type='perspective'><film type='specfilm'/><sampler type='halton'/></sensor>";
@@ -621,7 +622,7 @@ TEST_CASE_METHOD(MitsubaFixture, "plug-ins that Opal does not have are all named
         "null\n"
         ":5:1: unknown emitter type 'envmap'; available: area, point, spot, directional, constant\n"
         ":6:1: unknown medium type 'homogeneous'; available: none\n"
-        ":7:43: unknown texture type 'bitmap'; available: none\n"
+        ":7:43: unknown texture type 'volume'; available: checkerboard, bitmap\n"
         ":8:1: unknown integrator type 'ptracer'; available: path, volpath, volpathmis, direct, moment, aov\n"
         ":8:29: unknown sensor type 'batch'; available: perspective, thinlens, orthographic\n"
         ":9:28: unknown film type 'specfilm'; available: hdrfilm\n"
@@ -631,25 +632,95 @@ TEST_CASE_METHOD(MitsubaFixture, "plug-ins that Opal does not have are all named
 TEST_CASE_METHOD(MitsubaFixture, "lenient: what stands in for a plug-in is said", "[mitsuba]") {
     const LoadOptions lenient{.lenient = true};
     const std::string body =
-        "<emitter type='constant'/><shape type='disk'/><shape type='sphere'><bsdf type='plastic'/></shape>\n"
-        "<shape type='cube'><bsdf type='diffuse'><texture name='reflectance' type='checkerboard'>"
-        "<float name='color0' value='0.6'/></texture></bsdf></shape>\n"
-        "<shape type='cube'><bsdf type='diffuse'><texture name='reflectance' type='bitmap'>"
-        "<string name='filename' value='x.png'/></texture></bsdf></shape>";
+        "<shape type='disk'/><shape type='sphere'><bsdf type='plastic'><bsdf type='x'/></bsdf></shape>\n"
+        "<emitter type='constant'><texture name='radiance' type='checkerboard'><float name='color0' "
+        "value='0.6'/></texture>"
+        "</emitter>\n"
+        "<shape type='cube'><bsdf type='diffuse'><texture name='reflectance' type='volume'/></bsdf></shape>";
     const SceneDescription scene = load(body, lenient);
-    REQUIRE(scene.meshes.size() == 3);
+    REQUIRE(scene.meshes.size() == 2);
     CHECK(scene.meshes[0].bsdf.as<bsdf_diffuse_record>().albedo.value[0] == 0.5f);
-    CHECK(scene.meshes[1].bsdf.as<bsdf_diffuse_record>().albedo.value[0] == Approx(0.4f));
-    CHECK(scene.meshes[2].bsdf.as<bsdf_diffuse_record>().albedo.value[0] == 0.5f);
+    CHECK(scene.meshes[1].bsdf.as<bsdf_diffuse_record>().albedo.value[0] == 0.5f);
+    REQUIRE(scene.lights.size() == 1);
+    CHECK(std::get<emitter_constant>(scene.lights[0].parameters).radiance[1] == Approx(0.4));
     std::vector<std::string> told = warnings_of(body, lenient);
     std::ranges::sort(told);
     REQUIRE(told.size() == 4);
     CHECK_THAT(told[0],
-               Catch::StartsWith(":2:27: unknown shape type 'disk'") && Catch::EndsWith("; the shape is left out"));
-    CHECK_THAT(told[1], Catch::StartsWith(":2:68: unknown bsdf type 'plastic'") &&
+               Catch::StartsWith(":2:1: unknown shape type 'disk'") && Catch::EndsWith("; the shape is left out"));
+    CHECK_THAT(told[1], Catch::StartsWith(":2:42: unknown bsdf type 'plastic'") &&
                             Catch::EndsWith("; a diffuse one of reflectance 0.5 stands in for it"));
-    CHECK_THAT(told[2], Catch::EndsWith("; the mean of its colours stands in for it"));
-    CHECK_THAT(told[3], Catch::EndsWith("; 0.5 stands in for it"));
+    CHECK(told[2] == ":3:26: Opal has no texture as radiance of a constant; 0.4 0.4 0.4 stands in for it");
+    CHECK_THAT(told[3],
+               Catch::StartsWith(":4:41: unknown texture type 'volume'") && Catch::EndsWith("; 0.5 stands in for it"));
+    CHECK(error_in("<emitter type='constant'><texture name='radiance' type='checkerboard'/></emitter>") ==
+          ":2:26: property 'radiance': Opal has no texture here yet");
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "textures of reflectance and opacity", "[mitsuba]") {
+    const auto texture_of = [&](const Bsdf &made) {
+        REQUIRE(made.textures.size() == 1);
+        return made.textures.begin()->second;
+    };
+    const auto textured = [&](const std::string &type, const std::string &body) {
+        return bsdf("diffuse", fmt::format("<texture name='reflectance' type='{}'>{}</texture>", type, body));
+    };
+    const Bsdf plain = textured("checkerboard", "");
+    CHECK(plain.as<bsdf_diffuse_record>().albedo.value[1] == 1.f);
+    const auto squares = std::get<CheckerboardTexture>(texture_of(plain));
+    CHECK(squares.color0 == Color{0.4, 0.4, 0.4});
+    CHECK(squares.color1 == Color{0.2, 0.2, 0.2});
+    CHECK(squares.to_uv == identity_uv);
+    const auto moved = std::get<CheckerboardTexture>(texture_of(textured(
+        "checkerboard", "<rgb name='color0' value='0.1 0.2 0.3'/><float name='color1' value='0.9'/>"
+                        "<transform name='to_uv'><scale x='5' y='4'/><translate x='0.5' y='0.25'/></transform>")));
+    CHECK(moved.color0 == Color{0.1, 0.2, 0.3});
+    CHECK(moved.color1[2] == 0.9);
+    CHECK(moved.to_uv == UvTransform{{{5, 0, 0.5}, {0, 4, 0.25}}});
+    // a 3 x 3 matrix loses its translation, as in Mitsuba
+    CHECK(std::get<CheckerboardTexture>(
+              texture_of(
+                  textured("checkerboard", "<transform name='to_uv'><matrix value='2 0 7 0 3 7 0 0 1'/></transform>")))
+              .to_uv == UvTransform{{{2, 0, 0}, {0, 3, 0}}});
+
+    Image image;
+    image.width = 2;
+    image.height = 1;
+    image.layers = {{"R", {0.5f, 1}}, {"G", {0.25f, 1}}, {"B", {0, 1}}};
+    write_exr(image, scratch / "a.exr");
+    const std::string file = "<string name='filename' value='a.exr'/>";
+    const auto bitmap = std::get<BitmapTexture>(texture_of(textured("bitmap", file)));
+    CHECK(bitmap.picture->width == 2);
+    CHECK_FALSE(bitmap.raw);
+    CHECK_FALSE(bitmap.nearest);
+    CHECK(bitmap.wrap == WRAP_repeat);
+    const auto other = std::get<BitmapTexture>(texture_of(
+        textured("bitmap", file + "<string name='filter_type' value='nearest'/><boolean name='raw' value='true'/>"
+                                  "<string name='wrap_mode' value='clamp'/>")));
+    CHECK(other.raw);
+    CHECK(other.nearest);
+    CHECK(other.wrap == WRAP_clamp);
+    const Bsdf mask = bsdf("mask", "<texture name='opacity' type='checkerboard'/><bsdf type='diffuse'/>");
+    CHECK(mask.as<bsdf_mask_record>().opacity.value == 1.f);
+    CHECK(mask.textures.size() == 1);
+    // two materials share the picture
+    const SceneDescription scene =
+        load("<texture type='bitmap' id='t'>" + file +
+             "</texture><shape type='cube'>"
+             "<bsdf type='diffuse'><ref name='reflectance' id='t'/></bsdf></shape><shape type='cube'>"
+             "<bsdf type='diffuse'><texture name='reflectance' type='bitmap'>" +
+             file + "</texture></bsdf></shape>");
+    CHECK(std::get<BitmapTexture>(texture_of(scene.meshes[0].bsdf)).picture ==
+          std::get<BitmapTexture>(texture_of(scene.meshes[1].bsdf)).picture);
+
+    const auto error = [&](const std::string &body) {
+        return error_in("<bsdf type='diffuse'><texture name='reflectance' type='bitmap'>\n" + body +
+                        "</texture></bsdf>");
+    };
+    CHECK(error("") == ":2:22: the texture lacks its filename: <string name=\"filename\" value=\"a.png\"/>");
+    CHECK(error(file + "<string name='filter_type' value='ewa'/>") ==
+          ":3:41: property 'filter_type': unknown value 'ewa'; available: bilinear, nearest");
+    CHECK_THAT(error("<string name='filename' value='b.png'/>"), Catch::StartsWith(":3:1: property 'filename': "));
 }
 
 TEST_CASE_METHOD(MitsubaFixture, "without a sensor or an integrator there are defaults", "[mitsuba]") {

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <bit>
+
 namespace opal::mitsuba {
 
 namespace {
@@ -16,9 +18,31 @@ void require_white(Import &import, Object &object, const char *name) {
     object.check(color == white, name, "Opal has only 1 here");
 }
 
+// Sets a parameter of the material to that property: a texture, or a constant, as luminance where it is one number. It
+// keeps its default if the property is not given.
+void set_parameter(Import &import, Object &object, const std::string &property, Bsdf &bsdf, const std::string &name) {
+    const Parameter &parameter = find_row(bsdf_parameters(bsdf.kind()), "parameter", name);
+    const auto set = [&](const Color &color) {
+        const auto put = [&](size_t i, double x) { bsdf.words[parameter.word + i] = std::bit_cast<uint>(float(x)); };
+        if (parameter.type == ParameterType::NUMBER)
+            return put(0, luminance(color));
+        for (size_t i = 0; i < color.size(); i++)
+            put(i, color[i]);
+    };
+    if (const std::optional<Color> color = object.color(property, SpectrumUse::reflectance)) {
+        for (double channel : *color)
+            object.check(parameter.range.holds(channel), property, "must be " + text_of(parameter.range));
+        set(*color);
+    } else if (const std::optional<Texture> texture = import.texture(object, property)) {
+        set(white); // which the texture multiplies
+        bsdf.textures[parameter.texture_word] = *texture;
+    }
+}
+
 Bsdf parse_diffuse(Import &import, Object &object) {
-    const Color c = import.color(object, "reflectance", SpectrumUse::reflectance, {0.5, 0.5, 0.5});
-    return bsdf_diffuse_record{.albedo = {c[0], c[1], c[2]}};
+    Bsdf bsdf = bsdf_diffuse_record{};
+    set_parameter(import, object, "reflectance", bsdf, "albedo");
+    return bsdf;
 }
 
 // An index of refraction: a number, or the name of a material.
@@ -82,9 +106,8 @@ Bsdf parse_twosided(Import &import, Object &object) {
 }
 
 Bsdf parse_mask(Import &import, Object &object) {
-    const double opacity = import.number(object, "opacity", 0.5);
-    object.check(opacity >= 0 && opacity <= 1, "opacity", "must be from 0 to 1");
-    Bsdf bsdf = bsdf_mask_record{.opacity = opacity};
+    Bsdf bsdf = bsdf_mask_record{};
+    set_parameter(import, object, "opacity", bsdf, "opacity");
     bsdf.children = parse_children(import, object, 1, 1);
     return bsdf;
 }

@@ -1,5 +1,6 @@
 #include "base/log.h"
 #include "read/mitsuba/parsers.h"
+#include "read/picture.h"
 
 #include <fmt/format.h>
 
@@ -66,33 +67,41 @@ const Bsdf &Import::bsdf(Object &object) {
     return bsdfs_.emplace(&object, std::move(made)).first->second;
 }
 
-// The mean of a <texture>, if one stands for the property, as far as it is known without an image.
-std::optional<Color> Import::texture_mean(Object &object, const std::string &name) {
-    const auto texture = object.has(name) ? object.child_named(name) : nullptr;
-    if (!texture || texture->tag() != "texture")
-        return std::nullopt;
-    Color mean{0.5, 0.5, 0.5};
-    if (context_.lenient && texture->type() == "checkerboard") {
-        constexpr Color initial0{0.4, 0.4, 0.4}, initial1{0.2, 0.2, 0.2};
-        const Color a = texture->color("color0", SpectrumUse::reflectance).value_or(initial0);
-        const Color b = texture->color("color1", SpectrumUse::reflectance).value_or(initial1);
-        for (size_t i = 0; i < 3; i++)
-            mean[i] = (a[i] + b[i]) / 2;
-    }
-    refuse(*texture,
-           texture->type() == "checkerboard" ? "the mean of its colours stands in for it" : "0.5 stands in for it");
-    return mean;
+const std::optional<Texture> &Import::texture(Object &object) {
+    const auto known = textures_.find(&object);
+    return known != textures_.end() ? known->second
+                                    : textures_.emplace(&object, parse_texture(*this, object)).first->second;
+}
+
+std::optional<Texture> Import::texture(Object &object, const std::string &name) {
+    const auto child = object.has(name) ? object.child_named(name) : nullptr;
+    return child && child->tag() == "texture" ? texture(*child) : std::nullopt;
+}
+
+std::shared_ptr<const Picture> Import::picture(const std::filesystem::path &file) {
+    std::shared_ptr<const Picture> &picture = pictures_[file];
+    if (!picture)
+        picture = std::make_shared<const Picture>(read_picture(file, context_.hashes));
+    return picture;
 }
 
 Color Import::color(Object &object, const std::string &name, SpectrumUse use, const Color &otherwise) {
     if (const std::optional<Color> color = object.color(name, use))
         return *color;
-    return texture_mean(object, name).value_or(otherwise);
-}
-
-double Import::number(Object &object, const std::string &name, double otherwise) {
-    const Color grey{otherwise, otherwise, otherwise};
-    return luminance(color(object, name, SpectrumUse::reflectance, grey));
+    const auto child = object.has(name) ? object.child_named(name) : nullptr;
+    if (!child || child->tag() != "texture")
+        return otherwise;
+    Color mean{0.5, 0.5, 0.5};
+    if (const auto &read = texture(*child); read)
+        if (const auto *squares = std::get_if<CheckerboardTexture>(&*read))
+            for (size_t i = 0; i < mean.size(); i++)
+                mean[i] = (squares->color0[i] + squares->color1[i]) / 2;
+    if (context_.lenient)
+        warn(fmt::format("{}: Opal has no texture as {} of a {}; {:.4g} {:.4g} {:.4g} stands in for it",
+                         object.place_of(name).text(), name, object.type(), mean[0], mean[1], mean[2]));
+    else
+        object.mistake_at(name, "Opal has no texture here yet");
+    return mean;
 }
 
 std::shared_ptr<Object> only_child(Object &object, const std::string &tag) {

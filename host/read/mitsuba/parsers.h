@@ -4,6 +4,7 @@
 
 #include "read/mitsuba/object.h"
 
+#include <map>
 #include <set>
 #include <unordered_map>
 
@@ -39,9 +40,13 @@ public:
     // The material of a <bsdf>, which is read once however many objects refer to it.
     const Bsdf &bsdf(Object &object);
 
-    // The colour of a property. A <texture> has none yet: it is told as an unknown plug-in.
+    // The <texture> that a property is, if it is one and can be read; read once likewise.
+    std::optional<Texture> texture(Object &object, const std::string &name);
+    const std::optional<Texture> &texture(Object &object);
+    std::shared_ptr<const Picture> picture(const std::filesystem::path &file); // read once
+
+    // The colour of a property where Opal has no textures: one is a mistake, or if lenient its mean.
     Color color(Object &object, const std::string &name, SpectrumUse use, const Color &otherwise);
-    double number(Object &object, const std::string &name, double otherwise); // likewise, of textures
 
     void finish(); // one mistake for each plug-in that Opal does not have; if lenient, a warning
     std::vector<PluginUse> uses() const { return uses_; }
@@ -58,13 +63,14 @@ private:
 
     void count_use(const Object &object, const std::string &becomes);
     void count_unknown(Object &object, const std::vector<std::string> &known, const std::string &instead);
-    std::optional<Color> texture_mean(Object &object, const std::string &name);
 
     ParseContext context_;
     std::set<const Object *> counted_;
     std::vector<PluginUse> uses_;
     std::vector<Unknown> unknown_;
     std::unordered_map<const Object *, Bsdf> bsdfs_;
+    std::unordered_map<const Object *, std::optional<Texture>> textures_;
+    std::map<std::filesystem::path, std::shared_ptr<const Picture>> pictures_;
 };
 
 // At most one child of that tag; a second one is a mistake.
@@ -79,6 +85,7 @@ bool keeps_lengths(const Transform &transform);
 
 constexpr double most_scale_error = 1e-3; // of a squared length: as Mitsuba's cameras have it
 
+std::optional<Texture> parse_texture(Import &import, Object &object); // nothing if there is a mistake in it
 void parse_bsdf(Import &import, Object &object, Bsdf &bsdf);
 
 // Adds the meshes of a <shape>.
