@@ -47,7 +47,8 @@ typedef struct {
 
 typedef struct {
     float tan_half_x, tan_half_y; // film half extents at distance 1
-    float aperture_radius, focus_distance;
+    float aperture_radius;
+    float inverse_focus;          // 1 / depth of the plane that is seen sharply
 } ThinLensCamera;
 
 typedef struct {

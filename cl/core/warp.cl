@@ -19,6 +19,16 @@ static real square_to_uniform_disk_pdf(v2 p) {
     return mul_add(p.x, p.x, p.y * p.y) <= 1 ? (real)(INV_PI) : (real)(0);
 }
 
+// Uniform on the unit disk, squares to rings (Shirley and Chiu 1997, "A Low Distortion Map Between Disk and Square").
+static v2 square_to_concentric_disk(v2 u) {
+    real x = 2 * u.x - 1, y = 2 * u.y - 1;
+    mask wide = fabs(x) > fabs(y); // in the two sectors around the x axis
+    real r = wide ? x : y, other = wide ? y : x;
+    v2 cs = cos_sin_2pi(R(0.125) * other / (r == 0 ? (real)(1) : r)); // |angle| of at most pi / 4 from the sector's axis
+    return v2_of(r * (wide ? cs.x : cs.y), r * (wide ? cs.y : cs.x));
+}
+static real square_to_concentric_disk_pdf(v2 p) { return square_to_uniform_disk_pdf(p); }
+
 // The direction of height z and azimuth 2 pi v. The caller knows sine = sqrt(1 - z^2) without the digits that 1 - z^2
 // loses near 1.
 static v3 direction_of(real z, real sine, real v) {

@@ -45,9 +45,9 @@ enum {
     PARAMETER(NUMBER, cutoff_angle, "cutoffAngle", 20, BETWEEN(0, 180), \
               "angle from the axis at which the light ends, degrees") \
     PARAMETER(NUMBER, beam_width, "beamWidth", 15, BETWEEN(0, 180), \
-              "angle from the axis up to which the intensity is full, degrees") \
+              "angle from the axis up to which the intensity is full, degrees; 3/4 of a cutoffAngle that is given") \
     PARAMETER(FLAG, smooth, "smooth", false, ANY, \
-              "fall as the fourth power of the cosine's share, as pbrt has it, else in proportion to the angle")
+              "whether it falls by the fourth power of the cosine's share (pbrt), else with the angle (Mitsuba)")
 
 #define OPAL_EMITTER_directional(PARAMETER) \
     PARAMETER(VECTOR, direction, "direction", REQUIRED, ANY, "where the light goes to") \
@@ -97,11 +97,10 @@ typedef struct {
 typedef struct {
     float color[3];
     float position[3];
-    float direction[3];          // unit
-    float cutoff_angle;          // radians
-    float inverse_transition;    // 1 / (cutoff_angle - beam width)
-    float cos_cutoff, cos_beam;
-    uint smooth;                 // 1: the falloff of pbrt
+    float direction[3];       // unit
+    float cutoff_angle;       // radians
+    float inverse_transition; // 1 / (cutoff_angle - beam width); if smooth, 2 / (cosine of the beam - of the cutoff)
+    uint smooth;              // 1: it falls as in pbrt, 0: in proportion to the angle
 } emitter_spot_record;
 
 typedef struct {

@@ -6,6 +6,7 @@
 // all launches have one: work-items past the end return.
 #include "bsdfs/dispatch.cl"
 #include "bsdfs/interface.cl"
+#include "cameras/dispatch.cl"
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "core/rng.cl"
@@ -134,6 +135,20 @@ kernel void light_draw(SCENE_PARAMETERS, global const float *points, global cons
     put(out, LIGHT_DENSITY, stride, base, choice.probability / s.inverse_pdf);
     put_uints(out, LIGHT_ID, stride, base, choice.id);
     put(out, LIGHT_ACTIVE, stride, base, s.active ? (real)(1) : (real)(0));
+}
+
+// The camera's rays through points of the film in [0, 1]^2, by pairs of numbers for the lens.
+kernel void camera_rays(SCENE_PARAMETERS, global const float *given, global float *out, uint first, uint stride) {
+    uint base = base_of_item(first);
+    if (base >= stride) return;
+    Scene scene = SCENE_OF_PARAMETERS;
+    v2 film = get_v2(given, FILM_X, stride, base);
+    v2 pixels = v2_of(film.x * (real1)settings->width, film.y * (real1)settings->height);
+    Ray ray = camera_ray(&scene, (uints)(0), (uints)(0), pixels, get_v2(given, FILM_LENS, stride, base));
+    put_v3(out, RAY_O_X, stride, base, ray.o);
+    put_v3(out, RAY_D_X, stride, base, ray.d);
+    put(out, RAY_TMIN, stride, base, ray.tmin);
+    put(out, RAY_TMAX, stride, base, ray.tmax);
 }
 
 // Closest and any hit of rays; the light that a ray of unit direction meets: its radiance, and the density, solid angle

@@ -7,6 +7,7 @@
 #define OPAL_WARPS(PLANE, DIRECTION, LOBE) \
     PLANE(tent, biunit) \
     PLANE(uniform_disk, disk) \
+    PLANE(concentric_disk, disk) \
     DIRECTION(uniform_sphere, sphere) \
     DIRECTION(uniform_hemisphere, hemisphere) \
     DIRECTION(cosine_hemisphere, hemisphere) \
@@ -31,6 +32,7 @@ enum {
     LIGHT_D_X, LIGHT_D_Y, LIGHT_D_Z, LIGHT_DISTANCE, LIGHT_RADIANCE_R, LIGHT_RADIANCE_G, LIGHT_RADIANCE_B,
     LIGHT_DENSITY, LIGHT_ID, LIGHT_ACTIVE, LIGHT_PLANES
 };
+enum { FILM_X, FILM_Y, FILM_LENS, FILM_PLANES = 4 }; // of input: a point of the film, a pair of numbers
 enum { RAY_O_X, RAY_O_Y, RAY_O_Z, RAY_D_X, RAY_D_Y, RAY_D_Z, RAY_TMIN, RAY_TMAX, RAY_PLANES };
 enum {
     HIT_T, HIT_U, HIT_V, HIT_SLOT, HIT_ANY, HIT_EMITTER, HIT_RADIANCE_R, HIT_RADIANCE_G, HIT_RADIANCE_B,

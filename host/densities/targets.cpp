@@ -30,6 +30,7 @@ const std::pair<const char *, float> warp_defaults[] = {OPAL_WARPS(OPAL_NO_DEFAU
 const std::map<std::string, std::string> warp_help = {
     {"tent", "points of [-1, 1]^2, density (1 - |x|) (1 - |y|)"},
     {"uniform_disk", "points of the unit disk, density 1 / pi"},
+    {"concentric_disk", "the same, by a map that takes squares to rings"},
     {"uniform_sphere", "directions, density 1 / (4 pi)"},
     {"uniform_hemisphere", "directions above the surface, density 1 / (2 pi)"},
     {"cosine_hemisphere", "directions above the surface, density cos(theta) / pi"},

@@ -69,6 +69,7 @@ struct WarpCase {
 };
 const WarpCase warp_cases[] = {{WARP_tent, 0},
                                {WARP_uniform_disk, 0},
+                               {WARP_concentric_disk, 0},
                                {WARP_uniform_sphere, 0},
                                {WARP_uniform_hemisphere, 0},
                                {WARP_cosine_hemisphere, 0},

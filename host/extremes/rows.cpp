@@ -72,6 +72,24 @@ SceneDescription light_of_radiance(double radiance) {
     return floor_under(lamp_over({0, 1, 0}, 0.5, radiance), diffuse(0.5));
 }
 
+SceneDescription floor_lit_by(const Light &lamp, double fov) {
+    SceneDescription scene = path_traced({made_of(quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), diffuse(0.5))},
+                                         camera({0.1, 0.6, -0.9}, {0.1, 0, 0.1}, fov), 3);
+    scene.lights = {lamp};
+    return scene;
+}
+// A spot whose light ends at that angle from its axis; the view narrows with it.
+SceneDescription spot_of_angle(double degrees) {
+    const double area = std::min(1., std::pow(degrees / 45, 2)), power = 1 / area;
+    const emitter_spot spot{{0.3, 1, 0}, {-0.2, -1, 0.1}, {power, power, power}, degrees, degrees * 0.75, false};
+    return floor_lit_by({spot, {}}, std::min(40., 2 * degrees));
+}
+// Parallel light that makes this angle with the floor.
+SceneDescription sun_of_height(double degrees) {
+    const double a = degrees * (std::numbers::pi / 180), s = std::sin(a);
+    return floor_lit_by({emitter_directional{{std::cos(a), -s, 0}, {1 / s, 1 / s, 1 / s}}, {}}, 40);
+}
+
 SceneDescription rough_floor(double alpha) { return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4), microfacet(alpha)); }
 // A glossy floor seen from `degrees` above its plane.
 SceneDescription grazed_floor(double degrees) {
@@ -109,6 +127,13 @@ SceneDescription deep_furnace(double depth) { return furnace(0.1, unsigned(depth
 SceneDescription seen_through(double degrees) {
     SceneDescription scene = room();
     scene.camera.perspective.fov = degrees;
+    return scene;
+}
+SceneDescription seen_by_lens(double radius) {
+    SceneDescription scene = room();
+    const double fov = scene.camera.perspective.fov;
+    scene.camera.kind = CAMERA_thinlens;
+    scene.camera.thinlens = {fov, radius, 1};
     return scene;
 }
 SceneDescription clipped_near(double distance) {
@@ -310,6 +335,20 @@ const std::vector<StressRow> &stress_rows() {
          .promised_from = 1e-15,
          .promised_to = 1e15,
          .picture = light_of_radiance},
+        {.name = "spot",
+         .stretched = "angle at which a spot's light ends, degrees",
+         .values = joined({180, 90}, reversed(decades(-4, 1))),
+         .start = 90,
+         .promised_from = 1e-2,
+         .promised_to = 180,
+         .picture = spot_of_angle},
+        {.name = "sun",
+         .stretched = "angle of parallel light to the floor, degrees",
+         .values = joined({90}, reversed(decades(-5, 1))),
+         .start = 90,
+         .promised_from = 1e-2,
+         .promised_to = 90,
+         .picture = sun_of_height},
         {.name = "alpha",
          .stretched = "roughness of a microfacet floor",
          .values = reversed(decades(-6, 0)),
@@ -369,6 +408,13 @@ const std::vector<StressRow> &stress_rows() {
          .promised_from = 1e-3,
          .promised_to = 170,
          .picture = seen_through},
+        {.name = "lens",
+         .stretched = "radius of the lens, of the depth that is seen sharply",
+         .values = joined({0}, decades(-6, -1)),
+         .start = 0,
+         .promised_from = 0,
+         .promised_to = 0.1,
+         .picture = seen_by_lens},
         {.name = "near-clip",
          .stretched = "nearClip",
          .values = {0.01, 1e-4, 1e-10, 1e-20, 1e-30, 1e-40, 0},

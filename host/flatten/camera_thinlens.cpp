@@ -10,7 +10,7 @@ void fill_thinlens(const Camera &camera, double scale, ThinLensCamera &own) {
     own.tan_half_x = float(tangent);
     own.tan_half_y = float(tangent * camera.height / camera.width);
     own.aperture_radius = float(camera.thinlens.aperture_radius * scale);
-    own.focus_distance = float(camera.thinlens.focus_distance * scale);
+    own.inverse_focus = float(1 / (camera.thinlens.focus_distance * scale));
 }
 
 } // namespace opal

@@ -57,7 +57,8 @@ public:
     // LIGHT_*, seen from a point for each sample, in flattened units:
     Planes light_sample(std::span<const Vec3> from, const Planes &numbers);
     Planes light_sample(Vec3 from, const Planes &numbers);
-    Planes trace(const Planes &rays); // RAY_* -> HIT_*
+    Planes camera_rays(const Planes &film); // FILM_* -> RAY_*, of the scene's camera
+    Planes trace(const Planes &rays);       // RAY_* -> HIT_*
 
     const FlatScene &scene() const { return scene_; }
     const Device &device() const { return device_; }

@@ -68,7 +68,9 @@ const char *camera_name(unsigned kind) {
 std::string camera_text(const Camera &camera) {
     std::string text = camera_name(camera.kind);
     switch (camera.kind) {
-#define OPAL_NUMBER_TEXT(type, name, xml, initial, range, meaning) text += fmt::format(", " xml " {:g}", own.name);
+#define OPAL_NUMBER_TEXT(type, name, xml, initial, range, meaning)                                                     \
+    if (own.name != 0 || initial != 0) /* else nothing is shifted, or no lens is there */                              \
+        text += fmt::format(", " xml " {:g}", own.name);
 #define OPAL_CAMERA_TEXT(name, record, traits)                                                                         \
     case CAMERA_##name: {                                                                                              \
         [[maybe_unused]] const auto &own = camera.name;                                                                \

@@ -155,6 +155,8 @@ Findings scene_emitter_findings(KernelProbe &probe, const Light &light, const st
 FlatScene scene_of_light(const Light &light, int lanes) {
     SceneDescription scene;
     scene.lights = {light};
+    scene.strategy[AXIS_integrator] = CHOICE_integrator_path; // else its kernel may lack the light
+    scene.strategy[AXIS_lighting] = CHOICE_lighting_emitter;
     scene.strategy.specialise = Specialise::off;
     return flatten(scene, lanes);
 }

@@ -30,6 +30,7 @@ double invalid_at_corners(KernelProbe &probe, const WarpCase &c) {
 const std::vector<WarpCase> &selftest_warps() {
     static const std::vector<WarpCase> cases = {{WARP_tent, 0},
                                                 {WARP_uniform_disk, 0},
+                                                {WARP_concentric_disk, 0},
                                                 {WARP_uniform_sphere, 0},
                                                 {WARP_uniform_hemisphere, 0},
                                                 {WARP_cosine_hemisphere, 0},

@@ -1,9 +1,9 @@
-"""Scenes about light sources: Veach's plates, a furnace, mesh lights, many lights."""
+"""Scenes about light sources: Veach's plates, a furnace, mesh lights, many lights, spots."""
 import math
 
 from scenekit.shapes import Surface, icosphere, polygons, torus_knot
 from scenekit.vec import add, cross, dot, luminance, norm, scale, sub
-from scenekit.write import Scene, diffuse, microfacet, path_tracer, rotate, scaling, translate
+from scenekit.write import Scene, diffuse, microfacet, path_tracer, phong, rotate, scaling, translate
 
 BLACK = diffuse(0, 0, 0)
 GREY = diffuse(0.5, 0.5, 0.5)
@@ -128,6 +128,33 @@ Choosing an emitter by its power follows that; choosing uniformly spends the sam
     return scene
 
 
+def spot_lens():
+    scene = Scene("spot_lens", """
+Spots and moonlight on a stage, through a lens that is focused on the knot in the middle: what is nearer or farther is
+blurred. No ray meets these lights by chance, so that all light is found by light sampling.""")
+    eye, middle = (0.5, 1.75, 6.2), (0, 0.62, 0)
+    scene.camera(eye, (0, 0.7, 0), 32, 600, 400, lens=(0.16, math.dist(eye, middle)))
+    scene.mesh("checker_light", diffuse(0.6, 0.55, 0.48), scaling(0.9), translate(0, 0, -1))
+    scene.mesh("checker_dark", diffuse(0.16, 0.13, 0.12), scaling(0.9), translate(0, 0, -1))
+    scene.parallelogram((-12, 0, -7), (24, 0, 0), (0, 9, 0), diffuse(0.35, 0.28, 0.3))
+    scene.mesh("knot", microfacet(0.12, (0.55, 0.16, 0.1)), rotate((1, 0, 0), 78), scaling(0.42), translate(*middle))
+    scene.mesh("vase", microfacet(0.05, (0.08, 0.3, 0.34)), scaling(0.8), translate(-1.35, 0, 1.9))
+    scene.mesh("torus", microfacet(0.2, (0.5, 0.38, 0.08)), rotate((0, 0, 1), 12), scaling(0.36), translate(1.25, 0.18, 1.6))
+    for k in range(7):
+        angle = 0.45 * k - 1.35
+        scene.mesh("sphere_1280", phong((0.5, 0.5, 0.55), (0.4, 0.4, 0.4), 0.6, 60), scaling(0.11),
+                   translate(1.5 * math.sin(angle), 0.11, -1.5 * math.cos(angle) + 0.4))
+    scene.mesh("vase", diffuse(0.7, 0.66, 0.6), scaling(1.1), translate(1.7, 0, -3.2))
+    scene.mesh("vase", microfacet(0.1, (0.3, 0.1, 0.25)), scaling(0.9), translate(-1.5, 0, -3.6))
+    scene.spot((-2.2, 4.6, 3), middle, (95, 78, 52), 17, 9)
+    scene.spot((3.4, 3.8, 2.6), (1.25, 0.1, 1.6), (34, 42, 60), 14, 4)
+    scene.spot((-3, 4, 4.2), (-1.35, 0.5, 1.9), (38, 46, 44), 13, 6)
+    scene.spot((1.7, 5, -2.6), (1.7, 0.4, -3.2), (70, 46, 26), 15, 5)
+    scene.spot((-1.2, 5, -4.4), (-1.5, 0.5, -3.6), (24, 34, 70), 16, 6)
+    scene.sun((0.5, -1, -0.35), (0.1, 0.13, 0.2))
+    return scene
+
+
 def meshes():
     return {"furnace": (furnace_mesh(), "Furnace: 80 faces wound outwards, vn inwards"),
             "sphere_80_flat": (icosphere(1, smooth=False), "Unit sphere, 80 triangles, no vn"),
@@ -137,4 +164,4 @@ def meshes():
 
 
 def scenes():
-    return [veach_mis(), furnace(), mesh_light(), spiral_light(), many_lights()]
+    return [veach_mis(), furnace(), mesh_light(), spiral_light(), many_lights(), spot_lens()]

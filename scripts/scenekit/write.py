@@ -78,10 +78,13 @@ class Scene:
         self.head = [integrator or path_tracer(),
                      ('<sampler type="independent">', f'<integer name="sampleCount" value="{spp}"/>')]
 
-    def camera(self, origin, target, fov, width, height, far=None):
-        self.head.append(('<camera type="perspective">', f'<integer name="width" value="{width}"/>',
+    def camera(self, origin, target, fov, width, height, far=None, lens=None):
+        """lens: its radius and the depth that is seen sharply; without one the camera is a pinhole."""
+        kind = "thinlens" if lens else "perspective"
+        self.head.append((f'<camera type="{kind}">', f'<integer name="width" value="{width}"/>',
                           f'<integer name="height" value="{height}"/>', real("fov", fov),
                           *([real("farClip", far)] if far else []),
+                          *([real("lensRadius", lens[0]), real("focalDistance", lens[1])] if lens else []),
                           ('<transform name="toWorld">',
                            f'<lookat origin="{triple(origin)}" target="{triple(target)}" up="0 1 0"/>'),
                           f'<rfilter type="{self.filter}"/>'))
@@ -100,6 +103,17 @@ class Scene:
     def quad(self, a, b, d, material, radiance=None):
         """The parallelogram with corner a and its neighbours b and d; the front sees a, b, d counter-clockwise."""
         self.parallelogram(a, sub(b, a), sub(d, a), material, radiance)
+
+    def spot(self, position, target, intensity, cutoff, beam):
+        """A light at `position` that points at `target`: full to `beam` degrees from its axis, none from `cutoff` on."""
+        self.meshes.append(('<emitter type="spot">', f'<point name="position" value="{triple(position)}"/>',
+                            f'<vector name="direction" value="{triple(sub(target, position))}"/>',
+                            color("intensity", intensity), real("cutoffAngle", cutoff), real("beamWidth", beam)))
+
+    def sun(self, direction, irradiance):
+        """Parallel light that goes to `direction`."""
+        self.meshes.append(('<emitter type="directional">', f'<vector name="direction" value="{triple(direction)}"/>',
+                            color("irradiance", irradiance)))
 
     def _add(self, tag, shape, material, transform, radiance):
         parts = [tag, *shape]

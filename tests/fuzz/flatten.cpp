@@ -84,13 +84,28 @@ void add_object(FuzzedDataProvider &bytes, SceneDescription &scene) {
     if (bytes.ConsumeBool())
         mesh.radiance = color(bytes);
     mesh.emits_on_both_sides = bytes.ConsumeBool();
-    switch (bytes.ConsumeIntegralInRange(0, 7)) {
+    switch (bytes.ConsumeIntegralInRange(0, 9)) {
     case 0:
         scene.lights.push_back({emitter_point{.position = point(bytes), .power = color(bytes)}, {}});
         return;
     case 1:
         scene.lights.push_back({emitter_constant{.radiance = color(bytes)}, {}});
         return;
+    case 8:
+    case 9: {
+        const Vec3 direction = point(bytes), position = point(bytes);
+        if (!(length(direction) > 0)) // the reader refuses it
+            return;
+        if (bytes.ConsumeBool()) {
+            scene.lights.push_back({emitter_directional{direction, color(bytes)}, {}});
+            return;
+        }
+        const double cutoff = bytes.ConsumeFloatingPointInRange(0., 180.),
+                     beam = bytes.ConsumeFloatingPointInRange(0., 180.);
+        const Color intensity = color(bytes);
+        scene.lights.push_back({emitter_spot{position, direction, intensity, cutoff, beam, bytes.ConsumeBool()}, {}});
+        return;
+    }
     case 2: {
         const Parallelogram shape{point(bytes), point(bytes), point(bytes)};
         if (!(length(cross(shape.u, shape.v)) > 1e-12 * length(shape.u) * length(shape.v))) // the reader refuses it

@@ -146,6 +146,87 @@ TEST_CASE_METHOD(DialectFixture, "a pointlight has an intensity, and defaults", 
                Catch::EndsWith("property 'power': stands beside 'radiance', which says it already"));
 }
 
+TEST_CASE_METHOD(DialectFixture, "spots by the names of forks, as angles or as cosines", "[dialects]") {
+    const auto spot = [&](const std::string &type, const std::string &body) {
+        return std::get<emitter_spot>(load(camera + light + "<emitter type='" + type +
+                                           "'><point name='position' value='0 1 0'/>"
+                                           "<vector name='direction' value='0 -1 0'/>" +
+                                           body + "</emitter>")
+                                          .lights.at(0)
+                                          .parameters);
+    };
+    const std::string power = "<color name='power' value='1 2 3'/>";
+    const auto cone = [](const char *width, const char *start) {
+        return fmt::format("<float name='cosTotalWidth' value='{}'/><float name='cosFalloffStart' value='{}'/>", width,
+                           start);
+    };
+    const double intensity = 1 / (2 * std::numbers::pi * (1 - (0.5 + std::sqrt(0.5)) / 2));
+    for (const auto &[width, start] : {std::pair{"60", "45"}, {"0.5", "0.70710678118654752"}})
+        for (const char *type : {"spot", "spotlight"}) {
+            const emitter_spot read = spot(type, power + cone(width, start));
+            CHECK(read.cutoff_angle == Approx(60));
+            CHECK(read.beam_width == Approx(45));
+            CHECK(read.intensity[2] == Approx(3 * intensity));
+            CHECK(read.smooth);
+        }
+    CHECK_THAT(error_of([&] { spot("spot", power + cone("60", "45") + "<float name='beamWidth' value='9'/>"); }),
+               Catch::EndsWith("property 'beamWidth': stands beside 'power', which says it already"));
+    CHECK_THAT(error_of([&] { spot("spot", power); }), Catch::EndsWith("lacks its property 'cosTotalWidth'"));
+    CHECK_THAT(error_of([&] { spot("spot", cone("60", "45")); }), Catch::EndsWith("lacks its property 'power'"));
+    CHECK_THAT(error_of([&] { spot("spot", power + cone("181", "45")); }),
+               Catch::EndsWith("property 'cosTotalWidth': must be a cosine, or an angle from 1 to 180 degrees"));
+    CHECK_THAT(error_of([&] { spot("spot", power + cone("1", "1")); }), Catch::Contains("the cone is empty"));
+}
+
+TEST_CASE_METHOD(DialectFixture, "directional lights and skies by the names of forks", "[dialects]") {
+    const auto emitter = [&](const std::string &type, const std::string &body) {
+        return load(camera + light + "<emitter type='" + type + "'>" + body + "</emitter>").lights.at(0).parameters;
+    };
+    const std::string down = "<vector name='direction' value='0 -1 0'/>";
+    for (const char *name : {"power", "radiance", "irradiance"})
+        CHECK(std::get<emitter_directional>(
+                  emitter("directional", down + fmt::format("<color name='{}' value='1 2 3'/>", name)))
+                  .irradiance == Color{1, 2, 3});
+    const std::string radiance = "<color name='radiance' value='1 2 3'/>";
+    CHECK_THAT(error_of([&] { emitter("directional", down + radiance + "<color name='power' value='1 2 3'/>"); }),
+               Catch::Contains("is repeated"));
+    const std::string whole = radiance + "<float name='thetaA' value='180'/><transform name='toWorld'/>";
+    CHECK(std::get<emitter_constant>(emitter("distantdisk", whole)).radiance == Color{1, 2, 3});
+    CHECK_THAT(error_of([&] { emitter("distantdisk", radiance + "<float name='thetaA' value='5'/>"); }),
+               Catch::Contains("property 'thetaA': must be 180"));
+}
+
+TEST_CASE_METHOD(DialectFixture, "a perspective camera with a lens, by the names of forks", "[dialects]") {
+    const auto with = [&](const std::string &body, const std::string &type = "perspective") {
+        return load("<camera type='" + type + "'><float name='fov' value='50'/>" + body + "</camera>" + light).camera;
+    };
+    const auto number = [](const std::string &name, double value) {
+        return fmt::format("<float name='{}' value='{}'/>", name, value);
+    };
+    for (const char *radius : {"lensRadius", "radius", "apertureRadius", "aperture"})
+        for (const char *depth : {"focalDistance", "focusDistance", "focalLength"})
+            for (const char *type : {"perspective", "thinlens", "thin_lens"}) {
+                INFO(radius << " " << depth << " " << type);
+                const Camera camera = with(number(radius, 0.25) + number(depth, 7), type);
+                REQUIRE(camera.kind == CAMERA_thinlens);
+                CHECK((camera.thinlens.fov == 50 && camera.thinlens.aperture_radius == 0.25));
+                CHECK(camera.thinlens.focus_distance == 7);
+            }
+    CHECK(with(number("lensRadius", 0) + number("focalDistance", 0)).kind == CAMERA_perspective);
+    CHECK(with(number("lensRadius", 1) + number("focalDistance", 3) + "<boolean name='DoF' value='false'/>").kind ==
+          CAMERA_perspective);
+    CHECK(with("").kind == CAMERA_perspective);
+    CHECK_THAT(error_of([&] { with(number("lensRadius", 1)); }),
+               Catch::EndsWith("<camera> lacks its property 'focalDistance'"));
+    CHECK_THAT(error_of([&] { with(number("lensRadius", -1)); }), Catch::Contains("'lensRadius': must be 0 or more"));
+    CHECK_THAT(error_of([&] { with(number("lensRadius", 1) + number("focalLength", 0)); }),
+               Catch::Contains("'focalDistance': must be above 0"));
+    CHECK_THAT(
+        error_of([&] { with(number("lensRadius", 1) + number("focalLength", 2) + number("principalPointX", 0.1)); }),
+        Catch::Contains("'principalPointX': is of a pinhole alone"));
+    CHECK_THAT(error_of([&] { with(number("radius", 1) + number("aperture", 2)); }), Catch::Contains("is repeated"));
+}
+
 TEST_CASE_METHOD(DialectFixture, "tags and properties by other names", "[dialects]") {
     const SceneDescription scene =
         load(camera + "<shape type='parallelogram'>" + square +

@@ -1,5 +1,5 @@
 // The tables of lights.
-#include "flatten/geometry.h"
+#include "flatten/emitter_kinds.h"
 #include "support/error_of.h"
 #include "support/plain_scenes.h"
 
@@ -171,4 +171,64 @@ TEST_CASE("an environment sheds its power on the scene's bounding sphere, and th
 
     description.lights.push_back({emitter_constant{bright}, {"a.xml", 7, 1}});
     CHECK_THAT(test::error_of([&] { flatten(description, 8); }), Catch::StartsWith("a.xml:7:1: a second environment"));
+}
+
+TEST_CASE("a spot's power is the integral of its falloff", "[emitters]") {
+    // cos a = c; the falloff that cl/emitters/spot.cl has, in its plain form, by the midpoint rule
+    const auto integral = [](double cutoff, double beam, bool smooth) {
+        const double to = cutoff * pi / 180, from = std::min(beam, cutoff) * pi / 180;
+        const auto falloff = [&](double angle) {
+            const double share = smooth ? (std::cos(angle) - std::cos(to)) / (std::cos(from) - std::cos(to))
+                                        : (to - angle) / (to - from);
+            return angle <= from ? 1 : smooth ? std::pow(share, 4) : share;
+        };
+        constexpr int steps = 100000;
+        double sum = 0;
+        for (int i = 0; i < steps; i++) {
+            const double angle = to * (i + 0.5) / steps;
+            sum += 2 * pi * std::sin(angle) * falloff(angle) * to / steps;
+        }
+        return sum;
+    };
+    const Color bright{1, 2, 3};
+    for (const auto &[cutoff, beam] : {std::pair{20.0, 15.0},
+                                       {180.0, 0.0},
+                                       {180.0, 180.0},
+                                       {90.0, 89.9},
+                                       {40.0, 60.0},
+                                       {0.01, 0.002},
+                                       {30.0, 30.0},
+                                       {175.0, 170.0}})
+        for (bool smooth : {false, true}) {
+            INFO(cutoff << " " << beam << " " << smooth);
+            const Light light{emitter_spot{{1, 2, 3}, {0, 0, -2}, bright, cutoff, beam, smooth}, {}};
+            CHECK(power_of(light, 7) == Approx(luminance(bright) * integral(cutoff, beam, smooth)).epsilon(1e-6));
+        }
+    CHECK(power_of(Light{emitter_spot{{}, {0, 0, 1}, bright, 1e-7, 0, false}, {}}, 1) ==
+          Approx(luminance(bright) * pi * std::pow(1e-7 * pi / 180, 2) / 3)); // of a cone this thin a third
+    CHECK(is_black(Light{emitter_spot{{}, {0, 0, 1}, bright, 0, 0, false}, {}}));
+}
+
+TEST_CASE("spots and directional lights in the flattened units", "[emitters]") {
+    const Color bright{1, 2, 3};
+    SceneDescription description = scene_of({diffuse(Parallelogram{{-8, -8, 0}, {16, 0, 0}, {0, 16, 0}})}); // scale 1/8
+    description.lights = {{emitter_spot{{4, 0, 0}, {0, 0, -3}, bright, 60, 30, false}, {}},
+                          {emitter_spot{{4, 0, 0}, {0, 0, -3}, bright, 60, 60, true}, {}},
+                          {emitter_directional{{0, 3, -4}, bright}, {}}};
+    description.strategy[AXIS_emitter_choice] = CHOICE_emitter_choice_power;
+    const FlatScene scene = flatten(description, 8);
+    REQUIRE(scene.emitters.size() == 3);
+    const emitter_spot_record spot = scene.emitters[0].u.of_spot, sharp = scene.emitters[1].u.of_spot;
+    CHECK((spot.color[1] == 2.f / 64 && spot.position[0] == 0.5f && spot.direction[2] == -1));
+    CHECK(spot.cutoff_angle == Approx(pi / 3));
+    CHECK(spot.inverse_transition == Approx(6 / pi));
+    CHECK((sharp.smooth == 1 && std::isfinite(sharp.inverse_transition) && sharp.inverse_transition > 1e20f));
+    const emitter_directional_record sun = scene.emitters[2].u.of_directional;
+    CHECK((sun.color[2] == 3 && sun.direction[1] == 0.6f && sun.direction[2] == -0.8f));
+    CHECK(scene.settings.environment == OPAL_NONE); // no ray meets it
+    // The circle of half the box's diagonal: radius 8 sqrt(2).
+    CHECK(power_of(description.lights[2], 8 * std::sqrt(2)) == Approx(luminance(bright) * pi * 128));
+    const double spots = power_of(description.lights[0], 0) + power_of(description.lights[1], 0),
+                 all = spots + luminance(bright) * pi * 128;
+    CHECK(scene.emitters[2].probability == Approx(1 - spots / all));
 }

@@ -278,8 +278,8 @@ TEST_CASE_METHOD(LoadFixture, "camera values that make no sense fail at their pl
                Catch::StartsWith(":4:1: "));
     CHECK_THAT(property_error("camera", "perspective", "<float name='nearClip' value='-1'/>"),
                Catch::StartsWith(":4:1: "));
-    CHECK(property_error("camera", "orthographic", "") ==
-          ":3:1: unknown camera type 'orthographic'; available: perspective");
+    CHECK(property_error("camera", "spherical", "") ==
+          ":3:1: unknown camera type 'spherical'; available: perspective, thinlens, orthographic, thin_lens");
     CHECK(property_error("camera", "perspective", "<float name='fov' value='1e-6'/>").empty());
 }
 
@@ -344,6 +344,20 @@ TEST_CASE_METHOD(LoadFixture, "emitters stand where they belong", "[load]") {
     CHECK(scene.lights[0].place.text() == file() + ":3:1");
     const auto sky = load(camera + light + "<emitter type='constant'/>").lights.at(0);
     CHECK(std::get<emitter_constant>(sky.parameters).radiance == Color{1, 1, 1});
+    const auto spot = std::get<emitter_spot>(
+        load(camera + light +
+             "<emitter type='spot'><point name='position' value='1 2 3'/><vector name='direction' value='0 0 2'/>"
+             "<float name='cutoffAngle' value='40'/></emitter>")
+            .lights.at(0)
+            .parameters);
+    CHECK((spot.cutoff_angle == 40 && spot.beam_width == 30 && !spot.smooth)); // 3/4 of it
+    CHECK(spot.intensity == Color{1, 1, 1});
+    CHECK(error_in(camera + "<emitter type='directional'>\n<vector name='direction' value='0 0 0'/></emitter>") ==
+          ":3:1: property 'direction': must not be 0: where the light goes to");
+    CHECK(error_in(camera + "<emitter type='spot'><point name='position' value='0 0 0'/>"
+                            "<vector name='direction' value='0 0 1'/>\n<float name='cutoffAngle' value='181'/>"
+                            "<float name='beamWidth' value='1'/></emitter>") ==
+          ":3:1: property 'cutoffAngle': must be 0 to 180: angle from the axis at which the light ends, degrees");
     CHECK(error_in(camera + "\n<emitter type='point'><color name='power' value='1 1 1'/></emitter>") ==
           ":3:1: <emitter> lacks its property 'position'");
     CHECK(error_in(camera + "<emitter type='constant'>\n<color name='radiance' value='1 -1 1'/></emitter>") ==

@@ -25,6 +25,8 @@ Findings check_refraction(const Sources &sources, unsigned seed);   // Snell's l
 Findings check_choices(const Sources &sources, unsigned seed);      // shares of BSDFs' parts, number by number
 Findings check_emitters(const Sources &sources, unsigned seed);     // check_lights of tests/cases/emitters
 Findings check_trigonometry(const Sources &sources, unsigned seed); // cos_sin_2pi against double
+Findings check_cameras(const Sources &sources, unsigned);           // rays against Mitsuba's, to 1e-5
+Findings check_delta_lights(const Sources &sources, unsigned);      // spots and directional, to 1e-5
 
 // material_findings of these materials.
 Findings check_materials(const std::vector<Material> &materials, const Sources &sources, unsigned seed);

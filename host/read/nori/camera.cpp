@@ -53,7 +53,26 @@ void read_number(Properties &properties, const char *name, ValueRange range, con
          [[maybe_unused]] auto &own = camera.name;                                                                     \
          OPAL_CAMERA_##name(OPAL_READ_NUMBER)                                                                          \
      }},
-const std::vector<CameraType> camera_types = {OPAL_CAMERAS(OPAL_CAMERA_TYPE)};
+// thin_lens: a public fork of Nori.
+const std::vector<CameraType> camera_types = [] {
+    std::vector<CameraType> types = {OPAL_CAMERAS(OPAL_CAMERA_TYPE)};
+    types.push_back({"thin_lens", CAMERA_thinlens, types[CAMERA_thinlens].parse});
+    return types;
+}();
+
+// Public forks of Nori gave their perspective camera a lens. With a radius above 0 it is a thinlens.
+void read_lens_of_perspective(Properties &properties, Camera &camera) {
+    const double radius = properties.number("lensRadius").value_or(0);
+    const auto focus = properties.number("focalDistance");
+    properties.check(radius >= 0, "lensRadius", "must be 0 or more: radius of the lens");
+    if (!properties.boolean("DoF").value_or(true) || !(radius > 0))
+        return;
+    camera.kind = CAMERA_thinlens;
+    camera.thinlens = {camera.perspective.fov, radius, properties.required(focus, "focalDistance")};
+    properties.check(*focus > 0, "focalDistance", "must be above 0: depth of the plane that is seen sharply");
+    for (const char *name : {"principalPointX", "principalPointY"})
+        properties.check(!properties.has(name), name, "is of a pinhole alone, but this camera has a lens");
+}
 
 } // namespace
 
@@ -85,6 +104,8 @@ Camera parse_camera(const XmlNode &node, const ParseContext &context) {
     camera.width = properties.integer("width").value_or(camera.width);
     camera.height = properties.integer("height").value_or(camera.height);
     type->parse(properties, camera);
+    if (camera.kind == CAMERA_perspective)
+        context.attempt(node, [&] { read_lens_of_perspective(properties, camera); });
     camera.near_clip = properties.number("nearClip").value_or(camera.near_clip);
     camera.far_clip = properties.number("farClip").value_or(camera.far_clip);
     properties.check(camera.width >= 1, "width", "must be at least 1 pixel");

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace opal {
@@ -16,17 +17,20 @@ struct EmitterType {
     std::optional<EmitterParameters> parameters; // with all defaults; nothing: a child of a mesh
 };
 
-const char *const pointlight = "pointlight";
-constexpr double full_sphere = 4 * std::numbers::pi; // solid angle of all directions
+const char *const pointlight = "pointlight", *const distantdisk = "distantdisk";
+constexpr double pi = std::numbers::pi;
+constexpr double full_sphere = 4 * pi; // solid angle of all directions
 
 // parallelogram_emitter: the 2022 course's name for the area light of a parallelogram. pointlight: Zaragoza's course,
-// which has defaults.
+// which has defaults. spotlight, distantdisk: public forks of Nori.
 #define OPAL_EMITTER_TYPE(name, traits) {#name, emitter_##name{}},
 const std::vector<EmitterType> emitter_types = {
     {"area", {}},
     {"parallelogram_emitter", {}},
     OPAL_SCENE_EMITTERS(OPAL_EMITTER_TYPE){
-        pointlight, emitter_point{.position = {0, 100, 0}, .power = {full_sphere, full_sphere, full_sphere}}}};
+        pointlight, emitter_point{.position = {0, 100, 0}, .power = {full_sphere, full_sphere, full_sphere}}},
+    {"spotlight", emitter_spot{}},
+    {distantdisk, emitter_constant{}}};
 
 // The type of an emitter in a <parent>. Throws NoObject if there is none, or if it stands in the wrong place.
 const EmitterType &type_in(Properties &properties, const char *parent) {
@@ -43,32 +47,84 @@ const EmitterType &type_in(Properties &properties, const char *parent) {
     return *type;
 }
 
+// A mistake at each of these properties that is given: `other` says it already.
+void refuse_beside(const Properties &properties, const std::string &other, std::initializer_list<const char *> names) {
+    for (const char *name : names)
+        if (properties.has(name))
+            properties.mistake_at(name, fmt::format("stands beside '{}', which says it already", other));
+}
+
+bool is_negative(const Color &color) { return *std::min_element(color.begin(), color.end()) < 0; }
+
+Color operator*(const Color &color, double factor) { return {color[0] * factor, color[1] * factor, color[2] * factor}; }
+
+// Names of forks of Nori that are more than other names of the list's parameters (names.h). type: that of the file.
+
 // pointlight has `radiance`, which is its intensity in W / sr, for the power over the whole sphere.
-void read_intensity(Properties &properties, emitter_point &light) {
-    const std::optional<Color> intensity = properties.color("radiance");
+void read_names_of_forks(Properties &properties, const std::string &type, emitter_point &light) {
+    const auto intensity = type == pointlight ? properties.color("radiance") : std::nullopt;
     if (!intensity)
         return;
-    if (properties.color("power"))
-        properties.mistake_at("power", "stands beside 'radiance', which says it already");
-    const bool is_good = *std::min_element(intensity->begin(), intensity->end()) >= 0;
-    properties.check(is_good, "radiance", "must not be negative");
-    for (size_t i = 0; is_good && i < intensity->size(); i++)
-        light.power[i] = full_sphere * (*intensity)[i];
+    refuse_beside(properties, "radiance", {"power"});
+    properties.check(!is_negative(*intensity), "radiance", "must not be negative");
+    if (!is_negative(*intensity))
+        light.power = *intensity * full_sphere;
+}
+
+void read_names_of_forks(Properties &properties, const std::string &type, emitter_constant &) {
+    if (type != distantdisk)
+        return;
+    properties.ignore("toWorld");
+    const double half_angle = properties.required(properties.number("thetaA"), "thetaA");
+    properties.check(half_angle == 180, "thetaA", "must be 180, a sky of one radiance: Opal has no smaller disk");
+}
+
+void read_names_of_forks(Properties &, const std::string &, emitter_directional &) {}
+
+// The angle in degrees of a number that is a cosine in some forks and an angle in degrees in others.
+double angle_of(Properties &properties, const std::optional<double> &given, const char *name) {
+    const double number = properties.required(given, name);
+    if (!(number >= -1 && number <= 180))
+        properties.fail_at(name, "must be a cosine, or an angle from 1 to 180 degrees");
+    return number <= 1 ? std::acos(number) * (180 / pi) : number;
+}
+
+// Forks took their spot from pbrt: it falls by the fourth power, and its intensity is the power over the solid angle of
+// the cone whose cosine is the mean of the two.
+void read_names_of_forks(Properties &properties, const std::string &, emitter_spot &light) {
+    if (const auto cutoff = properties.number("cutoffAngle"))
+        light.beam_width = 0.75 * *cutoff; // as in Mitsuba
+    const auto power = properties.color("power");
+    const auto width = properties.number("cosTotalWidth"), start = properties.number("cosFalloffStart");
+    if (!power && !width && !start)
+        return;
+    light.smooth = true;
+    light.cutoff_angle = angle_of(properties, width, "cosTotalWidth");
+    light.beam_width = angle_of(properties, start, "cosFalloffStart");
+    const Color total = properties.required(power, "power");
+    refuse_beside(properties, "power", {"intensity", "cutoffAngle", "beamWidth", "smooth"});
+    if (is_negative(total))
+        properties.fail_at("power", "must not be negative");
+    const double mean_cosine =
+        (std::cos(light.cutoff_angle * (pi / 180)) + std::cos(light.beam_width * (pi / 180))) / 2;
+    if (!(mean_cosine < 1))
+        properties.fail_at("cosTotalWidth", "must be a cosine below 1: the cone is empty");
+    light.intensity = total * (1 / (2 * pi * (1 - mean_cosine)));
 }
 
 // Whether a parameter that must be given has no value yet.
 bool is_unset(const Color &color) { return std::isnan(color[0]); }
 bool is_unset(Vec3 v) { return std::isnan(v.x); }
-[[maybe_unused]] bool is_unset(double number) { return std::isnan(number); }
-[[maybe_unused]] bool is_unset(bool) { return false; }
+bool is_unset(double number) { return std::isnan(number); }
+bool is_unset(bool) { return false; }
 
 std::optional<Color> value_of(Properties &properties, const Parameter &parameter, const Color &) {
     return properties.color(parameter.xml_name);
 }
-[[maybe_unused]] std::optional<double> value_of(Properties &properties, const Parameter &parameter, double) {
+std::optional<double> value_of(Properties &properties, const Parameter &parameter, double) {
     return properties.number(parameter.xml_name);
 }
-[[maybe_unused]] std::optional<bool> value_of(Properties &properties, const Parameter &parameter, bool) {
+std::optional<bool> value_of(Properties &properties, const Parameter &parameter, bool) {
     return properties.boolean(parameter.xml_name);
 }
 std::optional<Vec3> value_of(Properties &properties, const Parameter &parameter, Vec3) {
@@ -80,11 +136,14 @@ void check_value(const Properties &properties, const Parameter &parameter, const
     for (double channel : color)
         check_range(properties, parameter, channel);
 }
-[[maybe_unused]] void check_value(const Properties &properties, const Parameter &parameter, double value) {
+void check_value(const Properties &properties, const Parameter &parameter, double value) {
     check_range(properties, parameter, value);
 }
-[[maybe_unused]] void check_value(const Properties &, const Parameter &, bool) {}
-void check_value(const Properties &, const Parameter &, Vec3) {}
+void check_value(const Properties &, const Parameter &, bool) {}
+void check_value(const Properties &properties, const Parameter &parameter, Vec3 value) {
+    properties.check(parameter.type == ParameterType::POINT || length(value) > 0, parameter.xml_name,
+                     fmt::format("must not be 0: {}", parameter.meaning));
+}
 
 } // namespace
 
@@ -108,8 +167,9 @@ Light parse_scene_emitter(const XmlNode &node, const ParseContext &context) {
     Properties properties(node, context);
     const EmitterType &type = type_in(properties, "scene");
     Light light{*type.parameters, node.place()};
-    if (type.name == pointlight)
-        read_intensity(properties, std::get<emitter_point>(light.parameters));
+    context.attempt(node, [&] {
+        std::visit([&](auto &own) { read_names_of_forks(properties, type.name, own); }, light.parameters);
+    });
     light.visit([&](const Parameter &parameter, auto &value) {
         context.attempt(node, [&] {
             const auto given = value_of(properties, parameter, value);

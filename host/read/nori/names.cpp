@@ -16,6 +16,24 @@ struct OtherName {
 // luminaire: Nori of 2012. shape: some forks.
 const std::vector<OtherName> other_tags = {{"luminaire", "emitter"}, {"shape", "mesh"}};
 
+struct OtherProperty {
+    std::string tag, type; // of the object; no type: all
+    std::string other, known;
+};
+
+// reflectance: Nori of 2012. Others: public forks, whose focalLength is the depth of the plane that is seen sharply,
+// and whose directional light has the irradiance as `power` or `radiance`.
+const std::vector<OtherProperty> other_properties = {
+    {"bsdf", "", "reflectance", "albedo"},
+    {"camera", "", "radius", "lensRadius"},
+    {"camera", "", "apertureRadius", "lensRadius"},
+    {"camera", "", "aperture", "lensRadius"},
+    {"camera", "", "focusDistance", "focalDistance"},
+    {"camera", "", "focalLength", "focalDistance"},
+    {"emitter", "directional", "power", "irradiance"},
+    {"emitter", "directional", "radiance", "irradiance"},
+};
+
 // What public forks register. Zaragoza's course has ETH's names direct_* with upstream's camera; its pointlight, which
 // has a radiance, tells it. parallelogram does not tell the course of 2022: Opal's own scenes have it with any
 // integrator.
@@ -122,7 +140,11 @@ std::string known_tag(const std::string &tag) {
 }
 
 std::string known_property(const XmlNode &object, const std::string &name) {
-    return object.tag() == "bsdf" && name == "reflectance" ? "albedo" : name; // Nori of 2012
+    const std::string tag = known_tag(object.tag());
+    for (const OtherProperty &row : other_properties)
+        if (row.other == name && row.tag == tag && (row.type.empty() || row.type == object.attribute("type")))
+            return row.known;
+    return name;
 }
 
 std::span<const DialectName> dialect_names() { return names_of_dialects; }

@@ -58,6 +58,7 @@ public:
     // The value as written, of a property of that type; nothing if it is missing or was fetched by boolean_if.
     std::optional<std::string> text(const std::string &tag, const std::string &name);
 
+    bool has(const std::string &name) const { return look(name); } // whether it is given
     // Accepts the property, whatever its type, and ignores it.
     void ignore(const std::string &name);
 

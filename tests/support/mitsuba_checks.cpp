@@ -1,0 +1,291 @@
+// Spots and cameras against values that Mitsuba 3.9.1 (scalar_rgb) gave.
+#include "scene/examples.h"
+#include "selftest/checks.h"
+#include "support/kernel_checks.h"
+#include "support/probe.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace opal::test {
+
+namespace {
+
+constexpr double tolerance = 1e-5;
+constexpr double radians = std::numbers::pi / 180;
+
+Camera camera_of(uint kind) {
+    Camera camera;
+    camera.kind = kind;
+    camera.width = 200;
+    camera.height = 100;
+    camera.near_clip = 0.01;
+    camera.far_clip = 10000;
+    camera.perspective.fov = camera.thinlens.fov = 40;
+    return camera;
+}
+Camera perspective(double fov) {
+    Camera camera = camera_of(CAMERA_perspective);
+    camera.perspective.fov = fov;
+    return camera;
+}
+Camera tall() {
+    Camera camera = perspective(40);
+    std::swap(camera.width, camera.height);
+    return camera;
+}
+Camera shifted() {
+    Camera camera = perspective(40);
+    camera.perspective.principal_point_x = 0.1;
+    camera.perspective.principal_point_y = 0.2;
+    return camera;
+}
+Camera moved() {
+    Camera camera = perspective(40);
+    camera.to_world = Transform::look_at({1, 2, 5}, {0, 0, 0}, {0, 1, 0});
+    return camera;
+}
+Camera orthographic(double scale) {
+    Camera camera = camera_of(CAMERA_orthographic);
+    camera.to_world = Transform::scale({scale, scale, 1});
+    return camera;
+}
+Camera thinlens() {
+    Camera camera = camera_of(CAMERA_thinlens);
+    camera.thinlens.aperture_radius = 0.5;
+    camera.thinlens.focus_distance = 4;
+    return camera;
+}
+
+struct KnownRay {
+    double film[2], lens[2]; // in [0, 1]^2
+    Vec3 origin, direction;  // the origin lies on the near plane
+    double length;           // from there to the far plane; 0: unknown
+};
+struct KnownCamera {
+    const char *name;
+    Camera camera;
+    std::vector<KnownRay> rays;
+};
+
+// Fields of view are those that Mitsuba derived across x from other axes and lengths. Points of the cropped film are
+// given as points of the whole.
+std::vector<KnownCamera> known_cameras() {
+    return {
+        {"fov 40",
+         perspective(40),
+         {{{0.5, 0.5}, {0.5, 0.5}, {2.980232e-10, 1.490116e-10, 0.01}, {2.980232e-08, 1.490116e-08, 1}, 9999.99},
+          {{0, 0}, {0.5, 0.5}, {0.003639702, 0.001819851, 0.01}, {0.3371261, 0.1685631, 0.9262464}, 10796.25},
+          {{1, 0}, {0.5, 0.5}, {-0.003639702, 0.001819851, 0.01}, {-0.337126, 0.1685631, 0.9262464}, 10796.25},
+          {{0.25, 0.75},
+           {0.5, 0.5},
+           {0.001819851, -0.0009099253, 0.01},
+           {0.1783313, -0.0891656, 0.9799222},
+           10204.88}}},
+        {"no fov",
+         perspective(42.31171),
+         {{{0, 0}, {0.5, 0.5}, {0.003869883, 0.001934942, 0.01}, {0.3551697, 0.1775849, 0.9177788}, 10895.86},
+          {{1, 0}, {0.5, 0.5}, {-0.003869882, 0.001934942, 0.01}, {-0.3551696, 0.1775849, 0.9177788}, 10895.86},
+          {{0.25, 0.75},
+           {0.5, 0.5},
+           {0.001934942, -0.0009674705, 0.01},
+           {0.1891194, -0.09455965, 0.9773906},
+           10231.31}}},
+        {"axis y",
+         perspective(72.10477),
+         {{{0, 0}, {0.5, 0.5}, {0.007279404, 0.003639702, 0.01}, {0.5645881, 0.2822941, 0.7755966}, 12893.29},
+          {{1, 0}, {0.5, 0.5}, {-0.007279403, 0.003639702, 0.01}, {-0.5645881, 0.2822941, 0.7755967}, 12893.29},
+          {{0.25, 0.75}, {0.5, 0.5}, {0.003639702, -0.001819851, 0.01}, {0.3371261, -0.168563, 0.9262464}, 10796.25}}},
+        {"axis diagonal",
+         perspective(36.06479),
+         {{{0, 0}, {0.5, 0.5}, {0.003255448, 0.001627724, 0.009999999}, {0.3059121, 0.1529561, 0.9396926}, 10641.77},
+          {{1, 0}, {0.5, 0.5}, {-0.003255448, 0.001627724, 0.009999999}, {-0.3059121, 0.1529561, 0.9396926}, 10641.77},
+          {{0.25, 0.75}, {0.5, 0.5}, {0.001627725, -0.000813862, 0.01}, {0.1601422, -0.08007108, 0.983841}, 10164.23}}},
+        {"35 mm",
+         perspective(57.87119),
+         {{{0, 0}, {0.5, 0.5}, {0.005528405, 0.002764203, 0.01}, {0.4702615, 0.2351307, 0.8506277}, 11756.01},
+          {{1, 0}, {0.5, 0.5}, {-0.005528404, 0.002764203, 0.009999999}, {-0.4702614, 0.2351308, 0.8506278}, 11756.01},
+          {{0.25, 0.75}, {0.5, 0.5}, {0.002764203, -0.001382101, 0.01}, {0.2640959, -0.1320479, 0.9554144}, 10466.65}}},
+        {"tall",
+         tall(),
+         {{{0, 0}, {0.5, 0.5}, {0.003639702, 0.007279404, 0.01}, {0.2822941, 0.5645882, 0.7755967}, 12893.29},
+          {{1, 0}, {0.5, 0.5}, {-0.003639701, 0.007279404, 0.01}, {-0.282294, 0.5645882, 0.7755967}, 12893.29},
+          {{0.25, 0.75}, {0.5, 0.5}, {0.001819851, -0.003639701, 0.01}, {0.1685631, -0.337126, 0.9262465}, 10796.25}}},
+        {"principal point",
+         shifted(),
+         {{{0.5, 0.5},
+           {0.5, 0.5},
+           {-0.0007279402, -0.0007279402, 0.01},
+           {-0.07241133, -0.07241133, 0.9947428},
+           10052.84},
+          {{0, 0}, {0.5, 0.5}, {0.002911762, 0.001091911, 0.01}, {0.2780422, 0.1042658, 0.9548933}, 10472.36},
+          {{1, 0}, {0.5, 0.5}, {-0.004367642, 0.001091911, 0.01}, {-0.3982639, 0.099566, 0.9118511}, 10966.69},
+          {{0.25, 0.75}, {0.5, 0.5}, {0.001091911, -0.001637866, 0.01}, {0.1071351, -0.1607026, 0.9811712}, 10191.89}}},
+        {"crop",
+         perspective(40),
+         {{{0.25, 0.2}, {0.5, 0.5}, {0.001819851, 0.001091911, 0.01}, {0.1780201, 0.1068121, 0.9782127}, 10222.72},
+          {{0.75, 0.2}, {0.5, 0.5}, {-0.001819851, 0.001091911, 0.01}, {-0.1780201, 0.1068121, 0.9782127}, 10222.72},
+          {{0.375, 0.575},
+           {0.5, 0.5},
+           {0.0009099256, -0.0002729775, 0.01},
+           {0.09058473, -0.0271754, 0.9955178},
+           10045.01}}},
+        {"look at",
+         moved(),
+         {{{0, 0}, {0.5, 0.5}, {0.9944749, 1.998043, 4.990933}, {-0.511759, -0.1812937, -0.8397828}, 10796.25},
+          {{1, 0}, {0.5, 0.5}, {1.001613, 1.998043, 4.989506}, {0.1493996, -0.1812937, -0.9720145}, 10796.25},
+          {{0.25, 0.75}, {0.5, 0.5}, {0.9964549, 1.995501, 4.991554}, {-0.3473914, -0.4408256, -0.8276424}, 10204.88}}},
+        {"orthographic",
+         orthographic(1),
+         {{{0.5, 0.5}, {0.5, 0.5}, {1.192093e-07, 5.960464e-08, 0.01}, {0, 0, 1}, 9999.99},
+          {{0, 0}, {0.5, 0.5}, {0.9999999, 0.5, 0.01}, {0, 0, 1}, 9999.99},
+          {{1, 0}, {0.5, 0.5}, {-0.9999997, 0.5, 0.01}, {0, 0, 1}, 9999.99},
+          {{0.25, 0.75}, {0.5, 0.5}, {0.5, -0.2499999, 0.01}, {0, 0, 1}, 9999.99}}},
+        {"orthographic scale 3",
+         orthographic(3),
+         {{{0, 0}, {0.5, 0.5}, {3, 1.5, 0.01}, {0, 0, 1}, 9999.99},
+          {{1, 0}, {0.5, 0.5}, {-2.999999, 1.5, 0.01}, {0, 0, 1}, 9999.99},
+          {{0.25, 0.75}, {0.5, 0.5}, {1.5, -0.7499997, 0.01}, {0, 0, 1}, 9999.99}}},
+        {"thinlens",
+         thinlens(),
+         {{{0.5, 0.5}, {0.5, 0.5}, {2.980232e-10, 1.490116e-10, 0.01}, {2.980232e-08, 1.490116e-08, 1}, 0},
+          {{0.5, 0.5}, {0.1, 0.2}, {-0.3317564, -0.2216725, 0.01}, {0.08273433, 0.05528132, 0.9950371}, 0},
+          {{0.5, 0.5}, {0.9, 0.3}, {0.3686279, -0.1526907, 0.01}, {-0.09192941, 0.03807844, 0.9950371}, 0},
+          {{0, 0}, {0.5, 0.5}, {0.003639702, 0.001819851, 0.01}, {0.3371261, 0.1685631, 0.9262464}, 0},
+          {{0, 0}, {0.1, 0.2}, {-0.3281166, -0.2198527, 0.01}, {0.3989035, 0.2119274, 0.8921676}, 0},
+          {{0, 0}, {0.9, 0.3}, {0.3722676, -0.1508708, 0.01}, {0.2563616, 0.2079095, 0.9439556}, 0},
+          {{1, 0}, {0.5, 0.5}, {-0.003639702, 0.001819851, 0.01}, {-0.337126, 0.1685631, 0.9262464}, 0},
+          {{1, 0}, {0.1, 0.2}, {-0.3353961, -0.2198527, 0.01}, {-0.2635603, 0.2229398, 0.9385275}, 0},
+          {{1, 0}, {0.9, 0.3}, {0.3649882, -0.1508708, 0.01}, {-0.4070775, 0.196469, 0.8920134}, 0}}},
+    };
+}
+
+struct KnownSpot {
+    double cutoff, beam; // degrees
+    std::vector<double> falloff;
+};
+const double spot_angles[] = {0,  2.5, 5,    7.5, 10,   12.5, 14, 15, 16, 17, 17.5,
+                              18, 19,  19.5, 20,  22.5, 25,   30, 35, 39, 40, 45};
+const KnownSpot known_spots[] = {
+    {20, 15, {1,         1,         1,         1, 1, 1, 1, 1, 0.8000001, 0.6000037, 0.4999993,
+              0.4000009, 0.1999989, 0.1000001, 0, 0, 0, 0, 0, 0,         0,         0}},
+    {40, 30, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0.5, 0.1000001, 0, 0}},
+    {40, 10, {1,         1,         1,         1,          1,         0.9166666, 0.8666667, 0.8333334,
+              0.8,       0.7666674, 0.7499998, 0.7333335,  0.6999998, 0.6833333, 0.6666666, 0.5833333,
+              0.5000001, 0.3333332, 0.1666666, 0.03333337, 0,         0}},
+    {30, 30, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0}},
+    {20, 30, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0}},
+};
+
+// Narrow cones about both ends of the axis, smooth or not, against the plain formulas in double. Rounding turns a
+// direction by 1e-7; the arc cosine of a float would be off by 1e-4.
+const double fine_angles[] = {0, 0.005, 0.011, 0.015, 0.019, 0.03, 90, 179.96, 179.985, 179.99, 180};
+const emitter_spot fine_spots[] = {{{}, {0, 0, 1}, {1, 1, 1}, 0.02, 0.01, false},
+                                   {{}, {0, 0, 1}, {1, 1, 1}, 0.02, 0.01, true},
+                                   {{}, {0, 0, 1}, {1, 1, 1}, 179.99, 179.97, false},
+                                   {{}, {0, 0, 1}, {1, 1, 1}, 179.99, 179.97, true}};
+constexpr double rounding = 3e-7;
+
+double falloff_of(const emitter_spot &spot, double angle) { // degrees
+    const double linear = (spot.cutoff_angle - angle) / (spot.cutoff_angle - spot.beam_width);
+    const double middle = (spot.cutoff_angle + angle) / 2 * radians,
+                 whole = (spot.cutoff_angle + spot.beam_width) / 2 * radians;
+    const double cosines = std::sin(middle) * std::sin((spot.cutoff_angle - angle) / 2 * radians) / std::sin(whole) /
+                           std::sin((spot.cutoff_angle - spot.beam_width) / 2 * radians);
+    return spot.smooth ? std::pow(std::clamp(cosines, 0., 1.), 4) : std::clamp(linear, 0., 1.);
+}
+
+// The falloff of a spot about +z, seen from these angles.
+template <class Angles>
+std::vector<double> falloffs(const emitter_spot &spot, const Angles &angles, int lanes, const Sources &sources) {
+    std::vector<Vec3> from;
+    for (double angle : angles)
+        from.push_back({std::sin(angle * radians), 0, std::cos(angle * radians)});
+    KernelProbe probe = probe_of(scene_of_light({spot, {}}, lanes), lanes, sources);
+    const double scale = probe.scene().scale;
+    const Planes drawn = probe.light_sample(from, Planes(2 * OPAL_PROBE_PAIRS, from.size()));
+    std::vector<double> all;
+    for (size_t i = 0; i < from.size(); i++)
+        all.push_back(drawn.at(LIGHT_ACTIVE, i) != 0 ? drawn.at(LIGHT_RADIANCE_R, i) / (scale * scale) : 0);
+    return all;
+}
+
+double largest(Vec3 v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+} // namespace
+
+Findings check_cameras(const Sources &sources, unsigned) {
+    Findings findings;
+    for (const KnownCamera &known : known_cameras()) {
+        SceneDescription scene;
+        scene.camera = known.camera;
+        scene.meshes = {examples::made_of(examples::quad({-3, 1, 2}, {4, 0, 0}, {0, 5, 1}), examples::diffuse(0.5))};
+        scene.strategy.specialise = Specialise::off;
+        Planes film(FILM_PLANES, known.rays.size());
+        for (size_t i = 0; i < known.rays.size(); i++)
+            for (size_t k = 0; k < 2; k++) {
+                film.at(FILM_X + k, i) = float(known.rays[i].film[k]);
+                film.at(FILM_LENS + k, i) = float(known.rays[i].lens[k]);
+            }
+        for (int lanes : tested_lanes()) {
+            KernelProbe probe = probe_of(flatten(scene, lanes), lanes, sources);
+            const Planes rays = probe.camera_rays(film);
+            double worst = 0;
+            for (size_t i = 0; i < known.rays.size(); i++) {
+                const KnownRay &ray = known.rays[i];
+                const Vec3 direction = rays.vec3(RAY_D_X, i);
+                const double scale = probe.scene().scale, near = rays.at(RAY_TMIN, i), far = rays.at(RAY_TMAX, i);
+                const Vec3 start = (rays.vec3(RAY_O_X, i) + direction * near) * (1 / scale) + probe.scene().center;
+                worst = std::max({worst, largest(direction - ray.direction), largest(start - ray.origin),
+                                  ray.length > 0 ? std::abs((far - near) / scale / ray.length - 1) : 0});
+            }
+            findings.push_back(
+                exact(fmt::format("rays of camera {}{}, off by {:.1e}", known.name, at_width(lanes), worst),
+                      worst < tolerance));
+        }
+    }
+    return findings;
+}
+
+Findings check_delta_lights(const Sources &sources, unsigned) {
+    Findings findings;
+    const auto judge = [&](const emitter_spot &spot, int lanes, double worst, double limit) {
+        findings.push_back(exact(fmt::format("spot of {} and {} degrees{}{}, off by {:.1e}", spot.cutoff_angle,
+                                             spot.beam_width, spot.smooth ? ", smooth" : "", at_width(lanes), worst),
+                                 worst < limit));
+    };
+    for (int lanes : tested_lanes()) {
+        const Light sun{emitter_directional{{0, 0, -1}, {1, 1, 1}}, {}};
+        KernelProbe probe = probe_of(scene_of_light(sun, lanes), lanes, sources);
+        const Planes drawn = probe.light_sample(Vec3{0, 0, 1}, Planes(2 * OPAL_PROBE_PAIRS, 1));
+        findings.push_back(exact("light that goes to -z comes from +z" + at_width(lanes),
+                                 largest(drawn.vec3(LIGHT_D_X, 0) - Vec3{0, 0, 1}) < tolerance &&
+                                     std::abs(drawn.at(LIGHT_RADIANCE_R, 0) - 1) < tolerance &&
+                                     drawn.at(LIGHT_DENSITY, 0) == 1 && drawn.at(LIGHT_ACTIVE, 0) == 1));
+        for (const KnownSpot &known : known_spots) {
+            const emitter_spot spot{{}, {0, 0, 1}, {1, 1, 1}, known.cutoff, known.beam, false};
+            const std::vector<double> found = falloffs(spot, spot_angles, lanes, sources);
+            double worst = 0;
+            for (size_t i = 0; i < found.size(); i++)
+                // At the edge of a cone without transition the last bit of the direction decides.
+                if (known.beam < known.cutoff || spot_angles[i] != known.cutoff)
+                    worst = std::max(worst, std::abs(found[i] - known.falloff[i]));
+            judge(spot, lanes, worst, tolerance);
+        }
+        for (const emitter_spot &spot : fine_spots) {
+            const std::vector<double> found = falloffs(spot, fine_angles, lanes, sources);
+            double worst = 0;
+            for (size_t i = 0; i < found.size(); i++)
+                worst = std::max(worst, std::abs(found[i] - falloff_of(spot, fine_angles[i])));
+            const double steepest =
+                spot.smooth ? 4 * 2 : 1; // the fourth power of a share that itself is twice as steep
+            judge(spot, lanes, worst, steepest * rounding / ((spot.cutoff_angle - spot.beam_width) * radians));
+        }
+    }
+    return findings;
+}
+
+} // namespace opal::test
