@@ -285,6 +285,8 @@ TEST_CASE_METHOD(MitsubaFixture, "of several sensors one is taken", "[mitsuba]")
     CHECK(load(three, {.sensor = "0"}).camera.width == 10);
     CHECK(load(three, {.sensor = "1"}).camera.width == 20);
     CHECK(load(three, {.sensor = "right"}).camera.width == 30);
+    CHECK(load(three, {.sensor = "left"}).hash == load(three).hash);
+    CHECK(load(three, {.sensor = "1"}).hash != load(three).hash); // another image
     for (const char *wrong : {"3", "-1", "middle"})
         CHECK(error_in(three, {.sensor = wrong}) ==
               fmt::format("--sensor {}: there is no such <sensor>; available: 0 (left), 1, 2 (right)", wrong));

@@ -13,14 +13,15 @@ namespace {
 constexpr Color white{1, 1, 1};
 
 // A property of which Opal has the value 1 alone.
-void require_white(Import &import, Object &object, const char *name) {
-    const Color color = import.color(object, name, SpectrumUse::reflectance, white);
+void require_white(Importer &importer, Object &object, const char *name) {
+    const Color color = importer.color(object, name, SpectrumUse::reflectance, white);
     object.check(color == white, name, "Opal has only 1 here");
 }
 
 // Sets a parameter of the material to that property: a texture, or a constant, as luminance where it is one number. It
 // keeps its default if the property is not given.
-void set_parameter(Import &import, Object &object, const std::string &property, Bsdf &bsdf, const std::string &name) {
+void set_parameter(Importer &importer, Object &object, const std::string &property, Bsdf &bsdf,
+                   const std::string &name) {
     const Parameter &parameter = find_row(bsdf_parameters(bsdf.kind()), "parameter", name);
     const auto set = [&](const Color &color) {
         const auto put = [&](size_t i, double x) { bsdf.words[parameter.word + i] = std::bit_cast<uint>(float(x)); };
@@ -33,15 +34,15 @@ void set_parameter(Import &import, Object &object, const std::string &property, 
         for (double channel : *color)
             object.check(parameter.range.holds(channel), property, "must be " + text_of(parameter.range));
         set(*color);
-    } else if (const std::optional<Texture> texture = import.texture(object, property)) {
+    } else if (const std::optional<Texture> texture = importer.texture(object, property)) {
         set(white); // which the texture multiplies
         bsdf.textures[parameter.texture_word] = *texture;
     }
 }
 
-Bsdf parse_diffuse(Import &import, Object &object) {
+Bsdf parse_diffuse(Importer &importer, Object &object) {
     Bsdf bsdf = bsdf_diffuse_record{};
-    set_parameter(import, object, "reflectance", bsdf, "albedo");
+    set_parameter(importer, object, "reflectance", bsdf, "albedo");
     return bsdf;
 }
 
@@ -60,31 +61,31 @@ double parse_index(Object &object, const char *name, const std::string &otherwis
     return index.value_or(1);
 }
 
-Bsdf parse_dielectric(Import &import, Object &object) {
+Bsdf parse_dielectric(Importer &importer, Object &object) {
     const double inside = parse_index(object, "int_ior", "bk7"), outside = parse_index(object, "ext_ior", "air");
-    require_white(import, object, "specular_reflectance");
-    require_white(import, object, "specular_transmittance");
+    require_white(importer, object, "specular_reflectance");
+    require_white(importer, object, "specular_transmittance");
     return bsdf_dielectric_record{.int_ior = inside, .ext_ior = outside};
 }
 
 // Opal's mirror is the conductor that reflects everything.
-Bsdf parse_conductor(Import &import, Object &object) {
+Bsdf parse_conductor(Importer &importer, Object &object) {
     const std::string material = object.string("material").value_or("none");
     object.check(material == "none", "material", "Opal has only 'none' yet, which reflects everything");
     for (const char *name : {"eta", "k"}) {
         object.check(!object.has(name), name, "Opal has only the conductor that reflects everything yet");
         object.ignore(name);
     }
-    require_white(import, object, "specular_reflectance");
+    require_white(importer, object, "specular_reflectance");
     return bsdf_mirror_record{};
 }
 
 // The materials within a material, of which there must be so many.
-std::vector<Bsdf> parse_children(Import &import, Object &object, size_t least, size_t most) {
+std::vector<Bsdf> parse_children(Importer &importer, Object &object, size_t least, size_t most) {
     std::vector<Bsdf> made;
     const auto children = object.children("bsdf");
     for (const auto &child : children)
-        made.push_back(import.bsdf(*child));
+        made.push_back(importer.bsdf(*child));
     if (children.size() < least || children.size() > most) {
         object.mistake(fmt::format("a {} has {} <bsdf> within it, not {}", object.type(),
                                    least == most ? fmt::format("{}", least) : fmt::format("{} or {}", least, most),
@@ -94,9 +95,9 @@ std::vector<Bsdf> parse_children(Import &import, Object &object, size_t least, s
     return made;
 }
 
-Bsdf parse_twosided(Import &import, Object &object) {
+Bsdf parse_twosided(Importer &importer, Object &object) {
     Bsdf bsdf = bsdf_twosided_record{};
-    bsdf.children = parse_children(import, object, 1, 2);
+    bsdf.children = parse_children(importer, object, 1, 2);
     for (const Bsdf &child : bsdf.children)
         if (child.traits() & OPAL_TRANSMITS)
             throw XmlError(child.place, "a twosided cannot hold a BSDF that light passes through");
@@ -105,16 +106,16 @@ Bsdf parse_twosided(Import &import, Object &object) {
     return bsdf;
 }
 
-Bsdf parse_mask(Import &import, Object &object) {
+Bsdf parse_mask(Importer &importer, Object &object) {
     Bsdf bsdf = bsdf_mask_record{};
-    set_parameter(import, object, "opacity", bsdf, "opacity");
-    bsdf.children = parse_children(import, object, 1, 1);
+    set_parameter(importer, object, "opacity", bsdf, "opacity");
+    bsdf.children = parse_children(importer, object, 1, 1);
     return bsdf;
 }
 
-Bsdf parse_null(Import &, Object &) { return bsdf_null_record{}; }
+Bsdf parse_null(Importer &, Object &) { return bsdf_null_record{}; }
 
-const std::vector<Plugin<Bsdf (*)(Import &, Object &)>> bsdf_types = {
+const std::vector<Plugin<Bsdf (*)(Importer &, Object &)>> bsdf_types = {
     {"diffuse", "diffuse", parse_diffuse},
     {"dielectric", "dielectric", parse_dielectric},
     {"conductor", "mirror", parse_conductor},
@@ -125,15 +126,14 @@ const std::vector<Plugin<Bsdf (*)(Import &, Object &)>> bsdf_types = {
 
 } // namespace
 
-void parse_bsdf(Import &import, Object &object, Bsdf &bsdf) {
-    const auto *type = import.row_of_type(object, bsdf_types, "a diffuse one of reflectance 0.5 stands in for it");
+void parse_bsdf(Importer &importer, Object &object, Bsdf &bsdf) {
+    const auto *type = importer.row_of_type(object, bsdf_types, "a diffuse one of reflectance 0.5 stands in for it");
     if (!type)
         return;
     const SourcePlace place = object.place();
-    import.context().attempt(object, [&] { bsdf = type->parse(import, object);
-});
-bsdf.place = place;
-object.finish();
-} // namespace opal::mitsuba
+    importer.context().attempt(object, [&] { bsdf = type->parse(importer, object); });
+    bsdf.place = place;
+    object.finish();
+}
 
 } // namespace opal::mitsuba

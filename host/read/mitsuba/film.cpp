@@ -56,8 +56,8 @@ const std::vector<Plugin<void (*)(Object &, Filter &)>> filter_types = {
     {"lanczos", "lanczos", parse_lanczos},
 };
 
-void parse_filter(Import &import, Object &object, Filter &filter) {
-    const auto *type = import.row_of_type(object, filter_types, "a gaussian one stands in for it");
+void parse_filter(Importer &importer, Object &object, Filter &filter) {
+    const auto *type = importer.row_of_type(object, filter_types, "a gaussian one stands in for it");
     if (!type)
         return;
     filter.given = true;
@@ -91,7 +91,7 @@ void parse_crop(Object &object, Camera &camera) {
     camera.crop = crop.is_whole() ? Crop{} : crop;
 }
 
-void parse_hdrfilm(Import &import, Object &object, Camera &camera) {
+void parse_hdrfilm(Importer &importer, Object &object, Camera &camera) {
     camera.width = object.integer("width").value_or(camera.width);
     camera.height = object.integer("height").value_or(camera.height);
     object.check(camera.width >= 1, "width", "must be at least 1 pixel");
@@ -105,14 +105,13 @@ void parse_hdrfilm(Import &import, Object &object, Camera &camera) {
     for (const char *name : {"banner", "compensate", "sample_border"}) // nothing that the image shows
         object.ignore(name);
     if (const auto filter = only_child(object, "rfilter"))
-        import.context().attempt(*filter, [&] { parse_filter(import, *filter, camera.filter);
-});
+        importer.context().attempt(*filter, [&] { parse_filter(importer, *filter, camera.filter); });
 } // namespace
 
-const std::vector<Plugin<void (*)(Import &, Object &, Camera &)>> film_types = {
+const std::vector<Plugin<void (*)(Importer &, Object &, Camera &)>> film_types = {
     {"hdrfilm", "the image, in float32", parse_hdrfilm}};
 
-} // namespace opal::mitsuba
+} // namespace
 
 void set_default_film(Camera &camera) {
     camera.width = 768;
@@ -122,11 +121,11 @@ void set_default_film(Camera &camera) {
     set_gaussian(camera.filter, 0.5);
 }
 
-void parse_film(Import &import, Object &object, Camera &camera) {
-    const auto *type = import.row_of_type(object, film_types, "an hdrfilm of 768 x 576 pixels stands in for it");
+void parse_film(Importer &importer, Object &object, Camera &camera) {
+    const auto *type = importer.row_of_type(object, film_types, "an hdrfilm of 768 x 576 pixels stands in for it");
     if (!type)
         return;
-    type->parse(import, object, camera);
+    type->parse(importer, object, camera);
     object.finish();
 }
 

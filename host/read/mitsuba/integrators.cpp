@@ -9,7 +9,7 @@ namespace opal::mitsuba {
 
 namespace {
 
-void parse_path(Import &, Object &object, SceneDescription &scene) {
+void parse_path(Importer &, Object &object, SceneDescription &scene) {
     Strategy &strategy = scene.strategy;
     if (const auto depth = object.integer("max_depth")) {
         object.check(*depth != 0, "max_depth", "0 would be a black image; 1 shows lights, 2 adds direct light");
@@ -28,7 +28,7 @@ int parse_count(Object &object, const char *name, int otherwise) {
     return std::max(count, 0);
 }
 
-void parse_direct(Import &, Object &object, SceneDescription &scene) {
+void parse_direct(Importer &, Object &object, SceneDescription &scene) {
     Strategy &strategy = scene.strategy;
     const char *const both = "shading_samples";
     const int shading = parse_count(object, both, 1);
@@ -48,25 +48,25 @@ void parse_direct(Import &, Object &object, SceneDescription &scene) {
 }
 
 // An integrator around another one, which renders.
-void parse_inner(Import &import, Object &object, SceneDescription &scene) {
+void parse_inner(Importer &importer, Object &object, SceneDescription &scene) {
     if (const auto inner = only_child(object, "integrator"))
-        parse_integrator(import, *inner, scene);
+        parse_integrator(importer, *inner, scene);
     else
         object.mistake(fmt::format("{} holds no <integrator> that renders", object.type()));
 }
 
-void parse_moment(Import &import, Object &object, SceneDescription &scene) { parse_inner(import, object, scene); }
+void parse_moment(Importer &importer, Object &object, SceneDescription &scene) { parse_inner(importer, object, scene); }
 
-void parse_aov(Import &import, Object &object, SceneDescription &scene) {
+void parse_aov(Importer &importer, Object &object, SceneDescription &scene) {
     const std::string channels = object.string("aovs").value_or("");
     if (!object.has("aovs"))
         object.mistake("aov lacks its property 'aovs'");
     else
         warn(fmt::format("{}: Opal writes none of these channels: {}", object.place_of("aovs").text(), channels));
-    parse_inner(import, object, scene);
+    parse_inner(importer, object, scene);
 }
 
-const std::vector<Plugin<void (*)(Import &, Object &, SceneDescription &)>> integrator_types = {
+const std::vector<Plugin<void (*)(Importer &, Object &, SceneDescription &)>> integrator_types = {
     {"path", "path", parse_path},
     {"volpath", "path", parse_path}, // it is the same where there are no media
     {"volpathmis", "path", parse_path},
@@ -92,8 +92,8 @@ void set_default_strategy(SceneDescription &scene) {
     strategy.rr_depth = first_roulette;
 }
 
-void parse_integrator(Import &import, Object &object, SceneDescription &scene) {
-    const auto *type = import.row_of_type(object, integrator_types, "path stands in for it");
+void parse_integrator(Importer &importer, Object &object, SceneDescription &scene) {
+    const auto *type = importer.row_of_type(object, integrator_types, "path stands in for it");
     if (!type)
         return;
     scene.hides_emitters |= object.boolean("hide_emitters").value_or(false);
@@ -102,7 +102,7 @@ void parse_integrator(Import &import, Object &object, SceneDescription &scene) {
     if (object.number("timeout").value_or(0) > 0)
         note(fmt::format("{}: timeout: Opal renders all samples; --time sets a limit",
                          object.place_of("timeout").text()));
-    type->parse(import, object, scene);
+    type->parse(importer, object, scene);
     object.finish();
 }
 

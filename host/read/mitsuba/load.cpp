@@ -32,29 +32,31 @@ const Sensor &choose_sensor(const std::vector<Sensor> &sensors, const std::strin
 }
 
 // Reads all sensors, so that a mistake in one is told whichever is taken.
-void read_sensors(Import &import, Object &root, const LoadOptions &options, SceneDescription &scene) {
+void read_sensors(Importer &importer, Object &root, const LoadOptions &options, SceneDescription &scene) {
+    const ParseContext &context = importer.context();
     std::vector<Sensor> sensors;
     for (const auto &child : root.children("sensor"))
-        import.context().attempt(*child, [&] { sensors.push_back(parse_sensor(import, *child));
-});
-if (sensors.empty() && options.sensor.empty()) {
-    sensors.push_back(default_sensor());
-    sensors.back().camera.place = sensors.back().sampler_place = root.place();
+        context.attempt(*child, [&] { sensors.push_back(parse_sensor(importer, *child)); });
+    if (sensors.empty() && options.sensor.empty()) {
+        sensors.push_back(default_sensor());
+        sensors.back().camera.place = sensors.back().sampler_place = root.place();
+    }
+    const Sensor &sensor = choose_sensor(sensors, options.sensor);
+    if (&sensor != &sensors.front()) // another image of the same files
+        context.hashes->add(fmt::format("sensor {}", &sensor - sensors.data()));
+    scene.camera = sensor.camera;
+    scene.spp = sensor.spp;
+    scene.sample_count_given = sensor.sample_count_given;
+    scene.sampler_place = sensor.sampler_place;
+    scene.strategy[AXIS_sampler] = sensor.sampler;
 }
-const Sensor &sensor = choose_sensor(sensors, options.sensor);
-scene.camera = sensor.camera;
-scene.spp = sensor.spp;
-scene.sample_count_given = sensor.sample_count_given;
-scene.sampler_place = sensor.sampler_place;
-scene.strategy[AXIS_sampler] = sensor.sampler;
-} // namespace
 
-void read_integrator(Import &import, Object &root, SceneDescription &scene) {
+void read_integrator(Importer &importer, Object &root, SceneDescription &scene) {
+    const ParseContext &context = importer.context();
     set_default_strategy(scene);
     if (const auto integrator = only_child(root, "integrator"))
-        import.context().attempt(*integrator, [&] { parse_integrator(import, *integrator, scene);
-});
-} // namespace opal::mitsuba
+        context.attempt(*integrator, [&] { parse_integrator(importer, *integrator, scene); });
+}
 
 // Says what Opal chose where the file leaves it open.
 void tell_choices(Object &root, const LoadOptions &options, const SceneDescription &scene) {
@@ -93,28 +95,29 @@ void warn_of_volpath(const SceneDescription &scene) {
                          light->place.text()));
 }
 
-SceneDescription parse_scene(Import &import, Object &root, const LoadOptions &options) {
+SceneDescription parse_scene(Importer &importer, Object &root, const LoadOptions &options) {
+    const ParseContext &context = importer.context();
     SceneDescription scene;
     scene.place = root.place();
     scene.dialect = Dialect::mitsuba;
-    read_integrator(import, root, scene);
-    read_sensors(import, root, options, scene);
+    read_integrator(importer, root, scene);
+    read_sensors(importer, root, options, scene);
     for (const auto &bsdf : root.children("bsdf")) // also those that nothing refers to
-        import.bsdf(*bsdf);
+        importer.bsdf(*bsdf);
+    for (const auto &texture : root.children("texture")) // likewise
+        importer.texture(*texture);
     for (const auto &shape : root.children("shape"))
-        parse_shape(import, *shape, scene);
+        parse_shape(importer, *shape, scene);
     for (const auto &emitter : root.children("emitter"))
-        import.context().attempt(*emitter,
-                                 [&] { scene.lights.push_back(parse_scene_emitter(import, *emitter));
-});
-for (const char *tag : {"texture", "medium", "phase", "volume"})
-    for (const auto &object : root.children(tag))
-        import.refuse(*object, "it is left out");
-for (const char *tag : {"film", "sampler", "rfilter", "spectrum"}) // others refer to them
-    root.children(tag);
-root.finish();
-import.finish();
-return scene;
+        context.attempt(*emitter, [&] { scene.lights.push_back(parse_scene_emitter(importer, *emitter)); });
+    for (const char *tag : {"medium", "phase", "volume"})
+        for (const auto &object : root.children(tag))
+            importer.refuse(*object, "it is left out");
+    for (const char *tag : {"film", "sampler", "rfilter", "spectrum"}) // others refer to them
+        root.children(tag);
+    root.finish();
+    importer.finish();
+    return scene;
 }
 
 } // namespace
@@ -131,13 +134,13 @@ SceneDescription load_scene(const std::filesystem::path &file, const LoadOptions
         document.root->mistake(
             fmt::format("the root is a <{}>; a scene's is <scene version=\"3.0.0\">", document.root->tag()));
     mistakes.throw_all(); // a name without a value would be told twice
-    Import import(context);
-    SceneDescription scene = parse_scene(import, *document.root, options);
+    Importer importer(context);
+    SceneDescription scene = parse_scene(importer, *document.root, options);
     mistakes.throw_all();
     scene.file = file;
     scene.definitions = document.definitions;
     scene.hash = hashes.value();
-    scene.plugins = import.uses();
+    scene.plugins = importer.uses();
     tell_choices(*document.root, options, scene);
     warn_if_black(scene);
     warn_of_volpath(scene);

@@ -18,9 +18,9 @@ template <class Parse> struct Plugin {
 };
 
 // What the parsers of a scene share: which plug-ins it uses, and what was made of objects that several others refer to.
-class Import {
+class Importer {
 public:
-    explicit Import(const ParseContext &context) : context_(context) {}
+    explicit Importer(const ParseContext &context) : context_(context) {}
 
     // The row of a table whose name is the object's plug-in; null where there is none, which finish() tells. The
     // properties of such an object are not looked at. instead: what is done if lenient.
@@ -85,14 +85,14 @@ bool keeps_lengths(const Transform &transform);
 
 constexpr double most_scale_error = 1e-3; // of a squared length: as Mitsuba's cameras have it
 
-std::optional<Texture> parse_texture(Import &import, Object &object); // nothing if there is a mistake in it
-void parse_bsdf(Import &import, Object &object, Bsdf &bsdf);
+std::optional<Texture> parse_texture(Importer &importer, Object &object); // nothing if there is a mistake in it
+void parse_bsdf(Importer &importer, Object &object, Bsdf &bsdf);
 
 // Adds the meshes of a <shape>.
-void parse_shape(Import &import, Object &object, SceneDescription &scene);
+void parse_shape(Importer &importer, Object &object, SceneDescription &scene);
 
-void parse_area_emitter(Import &import, Object &object, Mesh &mesh); // a child of a shape
-Light parse_scene_emitter(Import &import, Object &object);           // a child of the scene
+void parse_area_emitter(Importer &importer, Object &object, Mesh &mesh); // a child of a shape
+Light parse_scene_emitter(Importer &importer, Object &object);           // a child of the scene
 
 // What a <sensor> says.
 struct Sensor {
@@ -103,18 +103,18 @@ struct Sensor {
     bool sample_count_given = false;
     SourcePlace sampler_place;
 };
-Sensor parse_sensor(Import &import, Object &object);
+Sensor parse_sensor(Importer &importer, Object &object);
 Sensor default_sensor(); // what Mitsuba's perspective camera is without any property
 
-void parse_film(Import &import, Object &object, Camera &camera);
+void parse_film(Importer &importer, Object &object, Camera &camera);
 void set_default_film(Camera &camera); // 768 x 576 pixels, a Gaussian filter
 
 // The sampler's choice, and the samples a pixel.
-void parse_sampler(Import &import, Object &object, Sensor &sensor);
+void parse_sampler(Importer &importer, Object &object, Sensor &sensor);
 void set_default_sampler(Sensor &sensor); // independent, 4 samples
 
 // Sets the integrator's type and the strategy.
-void parse_integrator(Import &import, Object &object, SceneDescription &scene);
+void parse_integrator(Importer &importer, Object &object, SceneDescription &scene);
 void set_default_strategy(SceneDescription &scene); // that of Mitsuba's `path`; lights are chosen by power
 
 } // namespace opal::mitsuba

@@ -25,8 +25,8 @@ void set_default_sampler(Sensor &sensor) {
     sensor.spp = initial_count;
 }
 
-void parse_sampler(Import &import, Object &object, Sensor &sensor) {
-    const auto *type = import.row_of_type(object, sampler_types, "independent stands in for it");
+void parse_sampler(Importer &importer, Object &object, Sensor &sensor) {
+    const auto *type = importer.row_of_type(object, sampler_types, "independent stands in for it");
     if (!type)
         return;
     sensor.sampler = type->parse;

@@ -123,12 +123,12 @@ Sensor default_sensor() {
     return sensor;
 }
 
-Sensor parse_sensor(Import &import, Object &object) {
-    const ParseContext &context = import.context();
+Sensor parse_sensor(Importer &importer, Object &object) {
+    const ParseContext &context = importer.context();
     Sensor sensor = default_sensor();
     sensor.id = object.id();
     sensor.sampler_place = object.place();
-    const auto *type = import.row_of_type(object, sensor_types, "a perspective one stands in for it");
+    const auto *type = importer.row_of_type(object, sensor_types, "a perspective one stands in for it");
     if (!type)
         return sensor;
     Camera &camera = sensor.camera;
@@ -141,11 +141,11 @@ Sensor parse_sensor(Import &import, Object &object) {
     for (const char *name : {"shutter_open", "shutter_close"}) // nothing moves
         object.ignore(name);
     if (const auto film = only_child(object, "film"))
-        context.attempt(*film, [&] { parse_film(import, *film, camera); });
+        context.attempt(*film, [&] { parse_film(importer, *film, camera); });
     if (const auto sampler = only_child(object, "sampler"))
-        context.attempt(*sampler, [&] { parse_sampler(import, *sampler, sensor); });
+        context.attempt(*sampler, [&] { parse_sampler(importer, *sampler, sensor); });
     for (const auto &medium : object.children("medium"))
-        import.refuse(*medium, "it is left out");
+        importer.refuse(*medium, "it is left out");
     type->parse(object, camera);
     object.finish();
     return sensor;

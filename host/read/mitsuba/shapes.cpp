@@ -75,8 +75,8 @@ const std::vector<Plugin<Shape (*)(Object &, const Transform &, bool)>> shape_ty
 
 } // namespace
 
-void parse_shape(Import &import, Object &object, SceneDescription &scene) {
-    const auto *type = import.row_of_type(object, shape_types, "the shape is left out");
+void parse_shape(Importer &importer, Object &object, SceneDescription &scene) {
+    const auto *type = importer.row_of_type(object, shape_types, "the shape is left out");
     if (!type)
         return;
     Mesh mesh;
@@ -88,22 +88,20 @@ void parse_shape(Import &import, Object &object, SceneDescription &scene) {
     const bool flip_normals = object.boolean("flip_normals").value_or(false);
     object.ignore("silhouette_sampling_weight"); // of differentiable rendering
     if (const auto bsdf = only_child(object, "bsdf"))
-        mesh.bsdf = import.bsdf(*bsdf);
+        mesh.bsdf = importer.bsdf(*bsdf);
     if (const auto emitter = only_child(object, "emitter"))
-        import.context().attempt(*emitter, [&] { parse_area_emitter(import, *emitter, mesh);
-});
-for (const char *tag : {"medium", "sensor"})
-    for (const auto &child : object.children(tag))
-        import.refuse(*child, "it is left out");
-bool is_made = false;
-    import.context().attempt(object, [&] {
+        importer.context().attempt(*emitter, [&] { parse_area_emitter(importer, *emitter, mesh); });
+    for (const char *tag : {"medium", "sensor"})
+        for (const auto &child : object.children(tag))
+            importer.refuse(*child, "it is left out");
+    bool is_made = false;
+    importer.context().attempt(object, [&] {
         mesh.shape = type->parse(object, to_world, flip_normals);
-    is_made = true;
-    } // namespace opal::mitsuba
-);
-object.finish();
-if (is_made)
-    scene.meshes.push_back(std::move(mesh));
+        is_made = true;
+    });
+    object.finish();
+    if (is_made)
+        scene.meshes.push_back(std::move(mesh));
 }
 
 } // namespace opal::mitsuba

@@ -24,15 +24,15 @@ uint parse_choice(Object &object, const char *name, const std::vector<std::strin
     return found == choices.end() ? 0 : uint(found - choices.begin());
 }
 
-Texture parse_checkerboard(Import &import, Object &object) {
+Texture parse_checkerboard(Importer &importer, Object &object) {
     CheckerboardTexture texture;
-    texture.color0 = import.color(object, "color0", SpectrumUse::reflectance, texture.color0);
-    texture.color1 = import.color(object, "color1", SpectrumUse::reflectance, texture.color1);
+    texture.color0 = importer.color(object, "color0", SpectrumUse::reflectance, texture.color0);
+    texture.color1 = importer.color(object, "color1", SpectrumUse::reflectance, texture.color1);
     texture.to_uv = parse_to_uv(object);
     return texture;
 }
 
-Texture parse_bitmap(Import &import, Object &object) {
+Texture parse_bitmap(Importer &importer, Object &object) {
     BitmapTexture texture;
     texture.raw = object.boolean("raw").value_or(false);
     texture.nearest = parse_choice(object, "filter_type", {"bilinear", "nearest"}) == 1;
@@ -45,26 +45,25 @@ Texture parse_bitmap(Import &import, Object &object) {
         object.mistake("the texture lacks its filename: <string name=\"filename\" value=\"a.png\"/>");
     if (!file)
         throw NoObject{};
-    texture.picture = import.picture(*file);
+    texture.picture = importer.picture(*file);
     return texture;
 }
 
-const std::vector<Plugin<Texture (*)(Import &, Object &)>> texture_types = {
+const std::vector<Plugin<Texture (*)(Importer &, Object &)>> texture_types = {
     {"checkerboard", "checkerboard", parse_checkerboard},
     {"bitmap", "bitmap", parse_bitmap},
 };
 
 } // namespace
 
-std::optional<Texture> parse_texture(Import &import, Object &object) {
-    const auto *type = import.row_of_type(object, texture_types, "0.5 stands in for it");
+std::optional<Texture> parse_texture(Importer &importer, Object &object) {
+    const auto *type = importer.row_of_type(object, texture_types, "0.5 stands in for it");
     if (!type)
         return std::nullopt;
     std::optional<Texture> texture;
-    import.context().attempt(object, [&] { texture = type->parse(import, object);
-});
-object.finish();
-return texture;
-} // namespace opal::mitsuba
+    importer.context().attempt(object, [&] { texture = type->parse(importer, object); });
+    object.finish();
+    return texture;
+}
 
 } // namespace opal::mitsuba

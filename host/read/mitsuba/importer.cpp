@@ -15,7 +15,7 @@ Vec3 column(const Transform &t, int i) { return {t.rows[0][i], t.rows[1][i], t.r
 
 } // namespace
 
-void Import::count_use(const Object &object, const std::string &becomes) {
+void Importer::count_use(const Object &object, const std::string &becomes) {
     if (!counted_.insert(&object).second)
         return;
     auto use = std::ranges::find_if(uses_, [&](const PluginUse &known) {
@@ -26,7 +26,7 @@ void Import::count_use(const Object &object, const std::string &becomes) {
     use->count++;
 }
 
-void Import::count_unknown(Object &object, const std::vector<std::string> &known, const std::string &instead) {
+void Importer::count_unknown(Object &object, const std::vector<std::string> &known, const std::string &instead) {
     if (counted_.contains(&object))
         return;
     if (!context_.lenient)
@@ -46,7 +46,7 @@ void Import::count_unknown(Object &object, const std::vector<std::string> &known
         unknown->first = place;
 }
 
-void Import::finish() {
+void Importer::finish() {
     for (const Unknown &unknown : unknown_) {
         const std::string times = unknown.count == 1 ? "" : fmt::format(" ({} in the scene)", unknown.count);
         const std::string message = unknown_name(unknown.tag + " type", unknown.type, unknown.known, times);
@@ -57,35 +57,35 @@ void Import::finish() {
     }
 }
 
-const Bsdf &Import::bsdf(Object &object) {
+const Bsdf &Importer::bsdf(Object &object) {
     const auto known = bsdfs_.find(&object);
     if (known != bsdfs_.end())
         return known->second;
     Bsdf made;
     made.place = object.place();
-    context_.attempt(object, [&] { parse_bsdf(*this, object, made); });
+    parse_bsdf(*this, object, made);
     return bsdfs_.emplace(&object, std::move(made)).first->second;
 }
 
-const std::optional<Texture> &Import::texture(Object &object) {
+const std::optional<Texture> &Importer::texture(Object &object) {
     const auto known = textures_.find(&object);
     return known != textures_.end() ? known->second
                                     : textures_.emplace(&object, parse_texture(*this, object)).first->second;
 }
 
-std::optional<Texture> Import::texture(Object &object, const std::string &name) {
+std::optional<Texture> Importer::texture(Object &object, const std::string &name) {
     const auto child = object.has(name) ? object.child_named(name) : nullptr;
     return child && child->tag() == "texture" ? texture(*child) : std::nullopt;
 }
 
-std::shared_ptr<const Picture> Import::picture(const std::filesystem::path &file) {
+std::shared_ptr<const Picture> Importer::picture(const std::filesystem::path &file) {
     std::shared_ptr<const Picture> &picture = pictures_[file];
     if (!picture)
         picture = std::make_shared<const Picture>(read_picture(file, context_.hashes));
     return picture;
 }
 
-Color Import::color(Object &object, const std::string &name, SpectrumUse use, const Color &otherwise) {
+Color Importer::color(Object &object, const std::string &name, SpectrumUse use, const Color &otherwise) {
     if (const std::optional<Color> color = object.color(name, use))
         return *color;
     const auto child = object.has(name) ? object.child_named(name) : nullptr;
