@@ -106,7 +106,7 @@ void parse_hdrfilm(Importer &importer, Object &object, Camera &camera) {
         object.ignore(name);
     if (const auto filter = only_child(object, "rfilter"))
         importer.context().attempt(*filter, [&] { parse_filter(importer, *filter, camera.filter); });
-} // namespace
+}
 
 const std::vector<Plugin<void (*)(Importer &, Object &, Camera &)>> film_types = {
     {"hdrfilm", "the image, in float32", parse_hdrfilm}};
