@@ -664,8 +664,11 @@ TEST_CASE_METHOD(MitsubaFixture, "textures of reflectance and opacity", "[mitsub
         REQUIRE(made.textures.size() == 1);
         return made.textures.begin()->second;
     };
+    const auto textured_cube = [&](const std::string &type, const std::string &body) {
+        return shape("cube", fmt::format("<bsdf type='{}'>{}</bsdf>", type, body)).bsdf;
+    };
     const auto textured = [&](const std::string &type, const std::string &body) {
-        return bsdf("diffuse", fmt::format("<texture name='reflectance' type='{}'>{}</texture>", type, body));
+        return textured_cube("diffuse", fmt::format("<texture name='reflectance' type='{}'>{}</texture>", type, body));
     };
     const Bsdf plain = textured("checkerboard", "");
     CHECK(plain.as<bsdf_diffuse_record>().albedo.value[1] == 1.f);
@@ -702,9 +705,22 @@ TEST_CASE_METHOD(MitsubaFixture, "textures of reflectance and opacity", "[mitsub
     CHECK(other.raw);
     CHECK(other.nearest);
     CHECK(other.wrap == WRAP_clamp);
-    const Bsdf mask = bsdf("mask", "<texture name='opacity' type='checkerboard'/><bsdf type='diffuse'/>");
+    const Bsdf mask = textured_cube("mask", "<texture name='opacity' type='checkerboard'/><bsdf type='diffuse'/>");
     CHECK(mask.as<bsdf_mask_record>().opacity.value == 1.f);
     CHECK(mask.textures.size() == 1);
+    // A turned rectangle's sides are exchanged, but not its texture's.
+    const std::string board =
+        "<bsdf type='twosided'><bsdf type='diffuse'><texture name='reflectance' type='checkerboard'>"
+        "<transform name='to_uv'><scale x='5' y='4'/></transform></texture></bsdf></bsdf>";
+    for (const std::string &turn : {mirrored, std::string("<boolean name='flip_normals' value='true'/>")}) {
+        const Bsdf front = shape("rectangle", turn + board).bsdf.children.at(0);
+        CHECK(std::get<CheckerboardTexture>(texture_of(front)).to_uv == UvTransform{{{0, 5, 0}, {4, 0, 0}}});
+    }
+    const std::string ball = "<shape type='sphere'>" + board + "</shape>";
+    CHECK(error_in(ball) == ":2:1: Opal has no textures on spheres yet");
+    const Bsdf grey = load(ball, {.lenient = true}).meshes.at(0).bsdf.children.at(1);
+    CHECK(grey.textures.empty());
+    CHECK(grey.as<bsdf_diffuse_record>().albedo.value[2] == 0.5f);
     // two materials share the picture
     const SceneDescription scene =
         load("<texture type='bitmap' id='t'>" + file +
@@ -721,7 +737,7 @@ TEST_CASE_METHOD(MitsubaFixture, "textures of reflectance and opacity", "[mitsub
     };
     CHECK(error("") == ":2:22: the texture lacks its filename: <string name=\"filename\" value=\"a.png\"/>");
     CHECK(error(file + "<string name='filter_type' value='ewa'/>") ==
-          ":3:41: property 'filter_type': unknown value 'ewa'; available: bilinear, nearest");
+          ":3:40: property 'filter_type': unknown value 'ewa'; available: bilinear, nearest");
     CHECK_THAT(error("<string name='filename' value='b.png'/>"), Catch::StartsWith(":3:1: property 'filename': "));
 }
 
