@@ -391,6 +391,11 @@ TEST_CASE_METHOD(MitsubaFixture, "integrators: the strategy of path, and what fi
         CHECK_FALSE(scene.hides_emitters);
         CHECK(integrator_name(scene) == "path");
     }
+    for (const char *light : {"constant", "directional"})
+        CHECK(load(fmt::format("<emitter type='{}'/><emitter type='point'/>", light)).strategy[AXIS_emitter_choice] ==
+              CHOICE_emitter_choice_uniform);
+    CHECK(load("<emitter type='spot'/><emitter type='point'/>").strategy[AXIS_emitter_choice] ==
+          CHOICE_emitter_choice_power);
     const auto depths = [](int most, int roulette) {
         return fmt::format("<integer name='max_depth' value='{}'/><integer name='rr_depth' value='{}'/>", most,
                            roulette);

@@ -95,6 +95,13 @@ void warn_of_volpath(const SceneDescription &scene) {
                          light->place.text()));
 }
 
+// The power of an infinite light is that on a sphere around the scene, which tells little of the light on a surface.
+// Beside one, all lights are chosen alike: by power, a spot under a weak sky took 49 times as many samples.
+void choose_emitter_choice(SceneDescription &scene) {
+    if (std::ranges::any_of(scene.lights, [](const Light &light) { return is_infinite(light.kind()); }))
+        scene.strategy[AXIS_emitter_choice] = CHOICE_emitter_choice_uniform;
+}
+
 SceneDescription parse_scene(Importer &importer, Object &root, const LoadOptions &options) {
     const ParseContext &context = importer.context();
     SceneDescription scene;
@@ -110,6 +117,7 @@ SceneDescription parse_scene(Importer &importer, Object &root, const LoadOptions
         parse_shape(importer, *shape, scene);
     for (const auto &emitter : root.children("emitter"))
         context.attempt(*emitter, [&] { scene.lights.push_back(parse_scene_emitter(importer, *emitter)); });
+    choose_emitter_choice(scene);
     for (const char *tag : {"medium", "phase", "volume"})
         for (const auto &object : root.children(tag))
             importer.refuse(*object, "it is left out");
