@@ -93,6 +93,18 @@ SHAPES = """
         <bsdf type="conductor"/>
     </shape>
 
+    <!-- Behind the camera, for the mirror and the glass. -->
+    <shape type="rectangle">
+        <transform name="to_world">
+            <scale x="9" y="4"/>
+            <rotate y="1" angle="180"/>
+            <translate y="4" z="9.5"/>
+        </transform>
+        <bsdf type="diffuse">
+            <rgb name="reflectance" value="0.8, 0.62, 0.45"/>
+        </bsdf>
+    </shape>
+
     <!-- An OBJ file with normals of its own. -->
     <shape type="obj">
         <string name="filename" value="meshes/knot.obj"/>
@@ -158,15 +170,15 @@ SHAPES = """
     <!-- The lamp: a rectangle that looks down. -->
     <shape type="rectangle">
         <transform name="to_world">
-            <scale x="1.6" y="1.1"/>
+            <scale x="2.6" y="1.8"/>
             <rotate x="1" angle="90"/>
-            <translate x="-0.8" y="5.6" z="1.6"/>
+            <translate x="-0.8" y="6" z="2.4"/>
         </transform>
         <bsdf type="diffuse">
             <rgb name="reflectance" value="0"/>
         </bsdf>
         <emitter type="area">
-            <rgb name="radiance" value="15, 13.8, 12"/>
+            <rgb name="radiance" value="7.5, 7, 6.2"/>
         </emitter>
     </shape>
 """
@@ -179,7 +191,7 @@ SKY = """
     <sensor type="perspective">
         <float name="fov" value="32"/>
         <transform name="to_world">
-            <lookat origin="3.4, 2.5, 6.6" target="0.1, 0.8, 0" up="0, 1, 0"/>
+            <lookat origin="3.9, 2.6, 8.4" target="0.25, 1.3, 0" up="0, 1, 0"/>
         </transform>
         <film type="hdrfilm">
             <integer name="width" value="480"/>
@@ -200,7 +212,7 @@ SKY = """
             <rotate x="1" angle="-90"/>
         </transform>
         <bsdf type="diffuse">
-            <rgb name="reflectance" value="0.45, 0.42, 0.36"/>
+            <rgb name="reflectance" value="0.34, 0.36, 0.3"/>
         </bsdf>
     </shape>
 
@@ -231,7 +243,7 @@ SKY = """
         <string name="filename" value="meshes/torus.obj"/>
         <transform name="to_world">
             <scale value="0.42"/>
-            <translate x="0.65" y="0.1176" z="1.75"/>
+            <translate x="0.45" y="0.1176" z="1.35"/>
         </transform>
         <bsdf type="diffuse">
             <rgb name="reflectance" value="0.2, 0.42, 0.5"/>
