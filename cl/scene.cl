@@ -46,9 +46,20 @@ typedef struct {
 
 static mask is_hit(Hit hit) { return to_mask(hit.place != OPAL_NONE); }
 
+static Hit hit_pick(mask m, Hit yes, Hit no) {
+    Hit hit = {m ? yes.t : no.t, m ? yes.u : no.u, m ? yes.v : no.v, uints_pick(m, yes.shape, no.shape),
+               uints_pick(m, yes.place, no.place)};
+    return hit;
+}
+
 static Hit no_hit(real tmax) {
     Hit hit = {tmax, (real)(0), (real)(0), (uints)(0), (uints)(OPAL_NONE)};
     return hit;
+}
+
+static Ray ray_pick(mask m, Ray yes, Ray no) {
+    Ray ray = {v3_pick(m, yes.o, no.o), v3_pick(m, yes.d, no.d), m ? yes.tmin : no.tmin, m ? yes.tmax : no.tmax};
+    return ray;
 }
 
 // Returns `ray` through a select that cannot be optimised away, as compilers do not know that `always` is true.

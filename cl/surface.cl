@@ -15,6 +15,7 @@ typedef struct {
     real ray_offset;     // how far above the surface rays start (ray_offset_of)
     uints bsdf;          // first word of the BSDF's record
     uints emitter;       // index, OPAL_NONE where the surface does not emit
+    real opacity;        // the probability that light meets the BSDF (bsdf_open); of kernels with masks
 } Surface;
 
 static Surface surface_pick(mask m, Surface yes, Surface no) {
@@ -23,7 +24,7 @@ static Surface surface_pick(mask m, Surface yes, Surface no) {
     Surface s = {v3_pick(m, yes.p, no.p), m ? yes.t : no.t, m ? yes.u : no.u, m ? yes.v : no.v,
                  v2_of(m ? yes.uv.x : no.uv.x, m ? yes.uv.y : no.uv.y), v3_pick(m, yes.normal, no.normal), frame, v3_pick(m, yes.wi, no.wi),
                  uints_pick(m, yes.primitive, no.primitive), m ? yes.ray_offset : no.ray_offset,
-                 uints_pick(m, yes.bsdf, no.bsdf), uints_pick(m, yes.emitter, no.emitter)};
+                 uints_pick(m, yes.bsdf, no.bsdf), uints_pick(m, yes.emitter, no.emitter), (real)(1)};
     return s;
 }
 
@@ -32,7 +33,7 @@ static Surface no_surface(void) {
     v3 zero = v3_all((real)(0));
     Frame frame = {zero, zero, zero};
     Surface s = {zero, (real)(0), (real)(0), (real)(0), v2_of((real)(0), (real)(0)), zero, frame, zero, (uints)(0), (real)(0), (uints)(0),
-                 (uints)(OPAL_NONE)};
+                 (uints)(OPAL_NONE), (real)(1)};
     return s;
 }
 

@@ -3,6 +3,8 @@
 #include "bsdfs/*.cl"
 #include "bsdfs/list.h"
 #include "core/lanes.cl"
+#include "core/math.cl"
+#include "core/rng.cl"
 #include "scene.cl"
 #include "surface.cl"
 
@@ -17,7 +19,9 @@ enum { // of this kernel
     TRANSMITTING_BSDF_KINDS = 0 OPAL_BSDFS(COUNT_TRANSMITTING),
     DISCRETE_BSDF_KINDS = 0 OPAL_BSDFS(COUNT_DISCRETE),
     BOTH_SIDES_BSDF_KINDS = 0 OPAL_BSDFS(COUNT_BOTH_SIDES),
-    NESTING_BSDF_KINDS = 0 OPAL_NESTING_BSDFS(COUNT_BSDF)
+    NESTING_BSDF_KINDS = 0 OPAL_NESTING_BSDFS(COUNT_BSDF),
+    // Whether a BSDF may have both a density and single directions.
+    MIXED_BSDFS = OPAL_HAS_mirror_coats || OPAL_HAS_bsdf_mask
 };
 
 // The kind, where the kernel has several; else nobody asks.
@@ -32,16 +36,16 @@ static mask bsdf_lanes(uints kind, uint wanted) {
     return to_mask(kind == wanted);
 }
 
-// Sets the surface's BSDF, frame and wi to those of the BSDF that nested ones lead to. The functions below are asked
-// after that.
+// Sets the surface's BSDF, frame, wi and opacity to those of the BSDF that nested ones lead to. The functions below are
+// asked after that.
 static void bsdf_open(const Scene *scene, Surface *s, mask active) {
     if (NESTING_BSDF_KINDS == 0) return;
-    BsdfOpening o = {s->bsdf, s->wi, s->frame};
+    BsdfOpening o = {s->bsdf, s->wi, s->frame, (real)(1)};
     mask opened;
     do {
         uints kind = bsdf_kind(scene, o.at);
         opened = NO_LANES;
-#define OPEN(name, refused) \
+#define OPEN(name, traits) \
         if (OPAL_HAS_bsdf_##name) { \
             mask m = active & to_mask(kind == BSDF_##name); \
             if (ANY(m)) o = bsdf_opening_pick(m, name##_open(name##_at(scene, o.at, s->uv, m), o), o); \
@@ -52,6 +56,7 @@ static void bsdf_open(const Scene *scene, Surface *s, mask active) {
     s->bsdf = o.at;
     s->wi = o.wi;
     s->frame = o.frame;
+    s->opacity = o.opacity;
 }
 
 // What the BSDFs of a surface answer, one a lane.
@@ -61,10 +66,30 @@ typedef struct {
     BsdfSample sample; // the next direction
 } BsdfResponse;
 
-// Evaluates the surface's BSDFs in direction wo, in the lanes of `evaluated`, and draws a direction by u and lobe,
-// independent numbers in [0, 1), in those of `sampled`. f, pdf and the weight are 0 in other lanes. Both in one call,
-// because each kind's code is compiled, and each material read, once a call.
-static BsdfResponse bsdf_respond(const Scene *scene, const Surface *s, v3 wo, mask evaluated, v2 u, real lobe,
+// What a surface answers whose BSDF answers `r` and is met with probability s->opacity. met: a random number
+static BsdfResponse masked(const Surface *s, BsdfResponse r, real met, mask sampled) {
+    Choice meets = choose(s->opacity, met);
+    real drawn = drawn_probability(s->opacity);
+    BsdfSample passing = passing_sample(s->wi, (1 - s->opacity) / meets.probability);
+    r.f = v3_scale(r.f, s->opacity);
+    r.pdf = r.pdf * drawn;
+    r.sample.weight = v3_scale(r.sample.weight, meets.first ? s->opacity / drawn : (real)(1));
+    r.sample.pdf = r.sample.pdf * drawn;
+    r.sample = bsdf_sample_pick(sampled & !meets.first, passing, r.sample);
+    return r;
+}
+
+// Random numbers in [0, 1) for the sample of a BSDF.
+typedef struct {
+    v2 u;      // the direction
+    real lobe; // which lobe
+    real met;  // whether the surface is met; drawn of kernels with masks
+} BsdfNumbers;
+
+// Evaluates the surface's BSDFs in direction wo, in the lanes of `evaluated`, and draws a direction by `numbers` in
+// those of `sampled`. f, pdf and the weight are 0 in other lanes. Both in one call, because each kind's code is
+// compiled, and each material read, once a call.
+static BsdfResponse bsdf_respond(const Scene *scene, const Surface *s, v3 wo, mask evaluated, BsdfNumbers numbers,
                                  mask sampled) {
     BsdfResponse r;
     r.f = v3_all((real)(0));
@@ -81,16 +106,17 @@ static BsdfResponse bsdf_respond(const Scene *scene, const Surface *s, v3 wo, ma
                 r.f = v3_pick(m_evaluated, name##_eval(b, s->wi, wo), r.f); \
                 r.pdf = m_evaluated ? name##_pdf(b, s->wi, wo) : r.pdf; \
             } \
-            r.sample = bsdf_sample_pick(m_sampled, name##_sample(b, s->wi, u, lobe), r.sample); \
+            r.sample = bsdf_sample_pick(m_sampled, name##_sample(b, s->wi, numbers.u, numbers.lobe), r.sample); \
         } \
     }
     OPAL_BSDFS(RESPOND)
+    if (OPAL_HAS_bsdf_mask) r = masked(s, r, numbers.met, sampled);
     return r;
 }
 
 // The sample alone.
-static BsdfSample bsdf_sample(const Scene *scene, const Surface *s, v2 u, real lobe, mask active) {
-    return bsdf_respond(scene, s, s->wi, NO_LANES, u, lobe, active).sample;
+static BsdfSample bsdf_sample(const Scene *scene, const Surface *s, BsdfNumbers numbers, mask active) {
+    return bsdf_respond(scene, s, s->wi, NO_LANES, numbers, active).sample;
 }
 
 // The lanes whose BSDF is discrete and nothing else: light sampling cannot serve it.

@@ -35,16 +35,18 @@ OPAL_ALL_BSDFS(BSDF_READER)
 
 // A BSDF and how a surface asks it.
 typedef struct {
-    uints at;    // first word of its record
-    v3 wi;       // towards the viewer, in `frame`
-    Frame frame; // around the shading normal
+    uints at;     // first word of its record
+    v3 wi;        // towards the viewer, in `frame`
+    Frame frame;  // around the shading normal
+    real opacity; // the probability that light meets the BSDF (bsdfs/mask.cl)
 } BsdfOpening;
 
 static BsdfOpening bsdf_opening_pick(mask m, BsdfOpening yes, BsdfOpening no) {
     BsdfOpening o = {uints_pick(m, yes.at, no.at),
                      v3_pick(m, yes.wi, no.wi),
                      {v3_pick(m, yes.frame.s, no.frame.s), v3_pick(m, yes.frame.t, no.frame.t),
-                      v3_pick(m, yes.frame.n, no.frame.n)}};
+                      v3_pick(m, yes.frame.n, no.frame.n)},
+                     m ? yes.opacity : no.opacity};
     return o;
 }
 
@@ -54,14 +56,24 @@ typedef struct {
     real pdf;        // equals NAME_pdf(wo) up to rounding; 0 where discrete
     real eta;        // index of refraction of wo's side over wi's side; paths of radiance divide by its square
     mask discrete;   // wo has no density, so that light sampling cannot find it
+    mask passes;     // wo is -wi, because the surface is not met (bsdfs/null.cl, mask.cl)
 } BsdfSample;
 
 static BsdfSample bsdf_sample_of(v3 wo, v3 weight, real pdf, real eta, mask discrete) {
-    BsdfSample s = {wo, weight, pdf, eta, discrete};
+    BsdfSample s = {wo, weight, pdf, eta, discrete, NO_LANES};
+    return s;
+}
+
+// A sample that passes through the surface, with the same weight in all channels.
+static BsdfSample passing_sample(v3 wi, real weight) {
+    BsdfSample s = bsdf_sample_of(v3_neg(wi), v3_all(weight), (real)(0), (real)(1), ALL_LANES);
+    s.passes = ALL_LANES;
     return s;
 }
 
 static BsdfSample bsdf_sample_pick(mask m, BsdfSample yes, BsdfSample no) {
-    return bsdf_sample_of(v3_pick(m, yes.wo, no.wo), v3_pick(m, yes.weight, no.weight), m ? yes.pdf : no.pdf,
-                          m ? yes.eta : no.eta, m ? yes.discrete : no.discrete);
+    BsdfSample s = bsdf_sample_of(v3_pick(m, yes.wo, no.wo), v3_pick(m, yes.weight, no.weight), m ? yes.pdf : no.pdf,
+                                  m ? yes.eta : no.eta, m ? yes.discrete : no.discrete);
+    s.passes = m ? yes.passes : no.passes;
+    return s;
 }

@@ -15,9 +15,10 @@
 
 // Traits of a kind, as bits.
 enum {
-    OPAL_SMOOTH = 1,   // some of its light has a density, so that light sampling serves it
-    OPAL_DISCRETE = 2, // some of its light leaves in single directions
-    OPAL_TRANSMITS = 4 // light passes through the surface
+    OPAL_SMOOTH = 1,      // some of its light has a density, so that light sampling serves it
+    OPAL_DISCRETE = 2,    // some of its light leaves in single directions
+    OPAL_TRANSMITS = 4,   // light passes through the surface
+    OPAL_HOLDS_OPAQUE = 8 // of a BSDF that leads to others: these must not have the trait OPAL_TRANSMITS
 };
 
 // BSDF(name, traits)
@@ -29,10 +30,11 @@ enum {
     BSDF(phong, OPAL_SMOOTH) \
     BSDF(null, OPAL_DISCRETE | OPAL_TRANSMITS)
 
-// BSDFs that only lead to others, which are their parameters of type BSDF: BSDF(name, traits that these must not have)
+// BSDFs that lead to others, which are their parameters of type BSDF: BSDF(name, traits of its own). The others' traits
+// come to them.
 #define OPAL_NESTING_BSDFS(BSDF) \
-    BSDF(twosided, OPAL_TRANSMITS) \
-    BSDF(mask, 0)
+    BSDF(twosided, OPAL_HOLDS_OPAQUE) \
+    BSDF(mask, OPAL_DISCRETE | OPAL_TRANSMITS)
 
 #define OPAL_ALL_BSDFS(BSDF) OPAL_BSDFS(BSDF) OPAL_NESTING_BSDFS(BSDF)
 

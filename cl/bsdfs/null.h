@@ -1,4 +1,4 @@
-// The parameters of BSDF null: a surface that is not there (bsdfs/null.cl).
+// The parameters of BSDF null: a surface that changes no light (bsdfs/null.cl).
 #ifndef OPAL_BSDF_NULL_H
 #define OPAL_BSDF_NULL_H
 

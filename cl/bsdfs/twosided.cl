@@ -1,5 +1,5 @@
-// twosided: one BSDF on both sides of a surface, for BSDFs that reflect on the front alone.
-//   <bsdf type="twosided"> <bsdf type="diffuse"/> </bsdf>
+// twosided: BSDFs that reflect on the front alone, one for each side of a surface, or one for both.
+//   <bsdf type="twosided"> <bsdf type="diffuse"/> <bsdf type="mirror"/> </bsdf>
 // Seen from behind, the shading normal points the other way. What a surface emits leaves on its front alone.
 #include "bsdfs/interface.cl"
 #include "core/lanes.cl"

@@ -23,6 +23,9 @@ typedef struct {
     ReferencePoint from; // where it was drawn, for light sampling's density there
     real eta;        // product of the indices passed: throughput * eta^2 is free of refraction's scaling
     mask specular;   // camera ray or delta lobe: emission it hits counts in full
+    mask straight;   // of kernels that hide emitters: the camera's ray, which may have passed through surfaces
+    Ray first_ray;   // of kernels with sample counts: the camera's ray ...
+    Hit first_hit;   // ... and where it hit
     uints depth;     // segments so far, this ray included
     Sampler sampler;
 } Path;
@@ -33,6 +36,26 @@ static v2 path_draw(const Scene *scene, const Path *path, uint dimension) {
 }
 static u2 path_draw_bits(const Scene *scene, const Path *path, uint dimension) {
     return draw_bits(scene, path->sampler, segment_dimension(path->depth, dimension));
+}
+
+// What the camera's rays hit where emitters are hidden: a ray that hits an emitter goes on behind it, as if it were not
+// there. The path's ray begins there then, and the path has no segment more.
+static Hit pass_hidden_emitters(const Scene *scene, Path *path, Hit hit, mask active) {
+    if (!OPAL_HAS_hidden_emitters) return hit;
+    mask from_camera = active & to_mask(path->depth == 1u), passing = from_camera & is_hit(hit);
+    path->straight = from_camera | path->straight;
+    while (ANY(passing)) {
+        Surface s = surface_at(scene, path->ray, hit, passing);
+        passing = passing & to_mask(s.emitter != OPAL_NONE);
+        if (!ANY(passing)) break;
+        path->ray.o = v3_pick(passing, leave_surface(&s, path->ray.d), path->ray.o);
+        path->ray.tmin = passing ? (real)(0) : path->ray.tmin;
+        path->ray.tmax = passing ? path->ray.tmax - s.t : path->ray.tmax;
+        hit = hit_pick(passing, closest_hit(scene, path->ray, passing), hit);
+        add_count(scene, COUNTER_rays, count_lanes(passing));
+        passing = passing & is_hit(hit);
+    }
+    return hit;
 }
 
 // Adds light to the path's radiance. Without roulette a path may have thousands of segments, and a plain sum would lose
@@ -48,15 +71,21 @@ static void add_radiance(const Scene *scene, Path *path, v3 light) {
     path->radiance = sum;
 }
 
-// MIS weight of a sample (Veach 1997, eq. 9.8 and 9.10); ratio: the other technique's density over its own. A ratio
-// survives densities that are 0 or overflow.
+// MIS weight of a sample (Veach 1997, eq. 9.8 and 9.10); ratio: the other technique's density over its own, each times
+// its number of samples. A ratio survives densities that are 0 or overflow.
 static real mis_weight(const Scene *scene, real ratio) {
     return 1 / (1 + (CHOSEN(scene, mis, power) ? ratio * ratio : ratio));
 }
 
+// Light samples for each BSDF sample of a surface.
+static real light_samples_per_bsdf_sample(const Scene *scene) {
+    if (!OPAL_HAS_sample_counts) return (real)(1);
+    return (real)((real1)scene->settings->emitter_samples / (real1)scene->settings->bsdf_samples);
+}
+
 // The surface that each lane of on_surface hit.
 static Surface surface_met(const Scene *scene, const Path *path, Hit hit, mask on_surface) {
-    if (ENVIRONMENT_KINDS > 0 && !ANY(on_surface)) return no_surface();
+    if ((ENVIRONMENT_KINDS > 0 || OPAL_HAS_sample_counts) && !ANY(on_surface)) return no_surface();
     return surface_at(scene, path->ray, hit, on_surface);
 }
 
@@ -68,11 +97,13 @@ static CALLED v3 light_met(const Scene *scene, const Path *path, const Surface *
     mask met;
     uints id = emitter_met(scene, s, hit, active, &met);
     if (CHOSEN(scene, lighting, emitter)) met = met & path->specular;
+    if (OPAL_HAS_hidden_emitters) met = met & !(path->straight & !hit);
     if (!ANY(met)) return none;
     v3 radiance = emitter_radiance(scene, id, path->ray.d, s, met);
     if (CHOSEN(scene, lighting, mis)) {
         real light_pdf = emitter_pdf(scene, id, path->from, path->ray.d, s, met);
         real ratio = light_pdf * emitter_probability(scene, id, path->from) / path->pdf;
+        if (OPAL_HAS_sample_counts) ratio = ratio * light_samples_per_bsdf_sample(scene);
         radiance = v3_scale(radiance, path->specular ? (real)(1) : mis_weight(scene, ratio));
     }
     return v3_pick(met, radiance, none);
@@ -105,7 +136,9 @@ static DirectLight direct_light(const Scene *scene, const Path *path, const Surf
                                 BsdfResponse bsdf) {
     real inverse_pdf = light.inverse_pdf;
     if (CHOSEN(scene, lighting, mis)) {
-        real weight = mis_weight(scene, light.discrete ? (real)(0) : bsdf.pdf * inverse_pdf);
+        real ratio = bsdf.pdf * inverse_pdf;
+        if (OPAL_HAS_sample_counts) ratio = ratio / light_samples_per_bsdf_sample(scene);
+        real weight = mis_weight(scene, light.discrete ? (real)(0) : ratio);
         inverse_pdf = weight * inverse_pdf;
     }
     v3 light_in = v3_scale(v3_mul(bsdf.f, light.radiance), fabs(wo.z) * inverse_pdf);
@@ -151,6 +184,7 @@ static mask scatter(const Scene *scene, Path *path, const Surface *s, BsdfSample
         path->eta = path->eta * sample.eta;
     }
     path->specular = sample.discrete;
+    if (OPAL_HAS_hidden_emitters) path->straight = path->straight & sample.passes;
     if (CHOSEN(scene, lighting, mis)) {
         path->pdf = sample.pdf;
         path->from = reference_point(s);
@@ -167,25 +201,24 @@ static CALLED mask interact(const Scene *scene, Path *path, const Surface *s, ma
                      DirectLight *direct) {
     v3 wo;
     LightSample light = sample_light(scene, path, s, by_light, &wo);
-    v2 u = path_draw(scene, path, DIM_BSDF);
-    BsdfResponse bsdf = bsdf_respond(scene, s, wo, light.active, u, lobe, by_bsdf);
+    BsdfNumbers numbers = {path_draw(scene, path, DIM_BSDF), lobe, (real)(0)};
+    if (OPAL_HAS_bsdf_mask) numbers.met = path_draw(scene, path, DIM_MET).x;
+    BsdfResponse bsdf = bsdf_respond(scene, s, wo, light.active, numbers, by_bsdf);
     *direct = direct_light(scene, path, s, light, wo, bsdf);
     return scatter(scene, path, s, bsdf.sample, by_bsdf);
 }
 
-// The greatest probability to survive. It is below 1, because total reflection can hold a path in glass for ever, and
-// no lower, because the variance of a furnace of albedo a is finite only for a^2 < survival.
-#define ROULETTE_MOST R(0.9999)
-
 // Russian roulette: ends paths at random and divides the others' throughput by their probability to survive. Returns
-// the active lanes that survive. u: second number of DIM_LOBE, whose first chose the lobe in scatter
+// the active lanes that survive. u: second number of DIM_LOBE, whose first chose the lobe in scatter. rr_max is below 1
+// by default (--rr-max), because total reflection can hold a path in glass for ever, and no lower, because the variance
+// of a furnace of albedo a is finite only for a^2 < survival.
 static mask roulette(const Scene *scene, Path *path, mask active, real u) {
     if (CHOSEN(scene, rr, off)) return active;
     real survival = scene->settings->rr_prob;
     if (!CHOSEN(scene, rr, fixed)) {
         survival = v3_largest(path->throughput);
         if (CHOSEN(scene, rr, throughput_eta)) survival = survival * square(path->eta);
-        survival = drawn_probability(real_min(survival, (real)(ROULETTE_MOST)));
+        survival = drawn_probability(real_min(survival, (real)(scene->settings->rr_max)));
     }
     mask plays = active & to_mask(path->depth > scene->settings->rr_depth);
     path->throughput = v3_scale(path->throughput, plays ? 1 / survival : (real)(1));

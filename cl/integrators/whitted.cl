@@ -23,9 +23,9 @@ static mask whitted_step(const Scene *scene, Path *path, Hit hit, mask active) {
     Choice survives = choose((real)(WHITTED_SURVIVAL), u.y);
     path->throughput = v3_scale(path->throughput, specular ? 1 / survives.probability : (real)(1));
     DirectLight direct;
-    mask by_bsdf = OPAL_HAS_mirror_coats ? active : specular;
+    mask by_bsdf = MIXED_BSDFS ? active : specular;
     mask followed = interact(scene, path, &s, active & !specular, by_bsdf, u.x, &direct);
-    if (OPAL_HAS_mirror_coats) { // a BSDF that is not wholly discrete may have drawn its mirror
+    if (MIXED_BSDFS) { // a BSDF that is not wholly discrete may have drawn its mirror
         path->throughput = v3_scale(path->throughput, specular ? (real)(1) : 1 / survives.probability);
         followed = followed & path->specular;
     }

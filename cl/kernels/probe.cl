@@ -92,8 +92,9 @@ kernel void bsdf_draw(SCENE_PARAMETERS, uint mesh, float wi_x, float wi_y, float
     if (base >= stride) return;
     Scene scene = SCENE_OF_PARAMETERS;
     Surface surface = flat_surface(&scene, mesh, wi_x, wi_y, wi_z);
-    v2 u = get_v2(given, 0, stride, base);
-    BsdfSample s = bsdf_sample(&scene, &surface, u, get(given, 2, stride, base), ALL_LANES);
+    BsdfNumbers numbers = {get_v2(given, 0, stride, base), get(given, 2, stride, base), (real)(0)};
+    if (OPAL_HAS_bsdf_mask) numbers.met = get(given, 3, stride, base);
+    BsdfSample s = bsdf_sample(&scene, &surface, numbers, ALL_LANES);
     put_v3(out, BSDF_WO_X, stride, base, to_world(surface.frame, s.wo));
     put_v3(out, BSDF_WEIGHT_R, stride, base, s.weight);
     put(out, BSDF_PDF, stride, base, s.pdf);
@@ -108,7 +109,8 @@ kernel void bsdf_value(SCENE_PARAMETERS, uint mesh, float wi_x, float wi_y, floa
     Scene scene = SCENE_OF_PARAMETERS;
     Surface surface = flat_surface(&scene, mesh, wi_x, wi_y, wi_z);
     v3 wo = to_local(surface.frame, get_v3(points, WARP_X, stride, base));
-    BsdfResponse r = bsdf_respond(&scene, &surface, wo, ALL_LANES, v2_of((real)(0), (real)(0)), (real)(0), NO_LANES);
+    BsdfNumbers numbers = {v2_of((real)(0), (real)(0)), (real)(0), (real)(0)};
+    BsdfResponse r = bsdf_respond(&scene, &surface, wo, ALL_LANES, numbers, NO_LANES);
     put_v3(out, EVAL_R, stride, base, r.f);
     put(out, EVAL_PDF, stride, base, r.pdf);
 }

@@ -34,7 +34,9 @@ kernel void render(SCENE_PARAMETERS, global float *samples, uint first_item, uin
     path.from.p = path.from.n = v3_all((real)(0));
     path.ray.tmin = path.ray.tmax = path.pdf = path.eta = 0;
     path.depth = path.sampler.pixel = path.sampler.sample = path.sampler.key0 = path.sampler.key1 = (uints)(0);
-    path.specular = NO_LANES;
+    path.specular = path.straight = NO_LANES;
+    path.first_ray = path.ray;
+    path.first_hit = no_hit((real)(0));
     Queue queue = queue_of(settings, first_item + (uint)get_global_id(0), items, tile_width, tile_height, chunks,
                            chunk_samples, pass_first, pass_samples);
     Starts starts;
@@ -53,6 +55,7 @@ kernel void render(SCENE_PARAMETERS, global float *samples, uint first_item, uin
             Hit hit = closest_hit(&scene, path.ray, active);
             if (OPAL_REPEAT_traversal) hit = closest_hit(&scene, same_ray(path.ray, hit.t > -1), active);
             add_count(&scene, COUNTER_rays, count_lanes(active));
+            hit = pass_hidden_emitters(&scene, &path, hit, active);
             add_count(&scene, COUNTER_rounds, 1);
             mask active_next = integrator_step(&scene, &path, hit, active);
             ended = lanes_of(active & !active_next);

@@ -79,6 +79,7 @@ typedef struct {
     float rr_prob;                  // --rr fixed: probability to survive, a multiple of 2^-24 as random numbers are
     float rr_max;                   // --rr throughput: greatest probability to survive, a multiple of 2^-24
     uint emitter_samples, bsdf_samples; // of direct_lighting: how many of each kind
+    uint lights_reflect;            // direct_lighting: surfaces that emit gather light, too (1)
     uint normals_signed;            // integrator normals: n/2 + 1/2 (1) or |n| (0)
     float visibility_length;        // integrator av: how far it looks
     float light_position[3];        // integrator simple
@@ -89,7 +90,7 @@ typedef struct {
     float filter_b, filter_c;       // mitchell
     int choices[AXIS_COUNT];        // CHOICE_* of each axis; read by the general kernel only
 } Settings;
-OPAL_SIZE_CHECK(Settings, 136 + 4 * AXIS_COUNT);
+OPAL_SIZE_CHECK(Settings, 140 + 4 * AXIS_COUNT);
 
 #ifdef __cplusplus
 }

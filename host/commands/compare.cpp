@@ -1,4 +1,5 @@
 // opal compare: errors of an image against a reference, and a test of their means.
+#include "base/color.h"
 #include "base/error.h"
 #include "base/exit_code.h"
 #include "base/json.h"
@@ -28,24 +29,51 @@ struct Options {
 
 bool is_variance(const std::string &layer) { return layer.starts_with("variance."); }
 
-// Names of the layers in `a` that `b` lacks. Variances do not count: without them there is no test, but all else.
-std::string missing_layers(const Image &a, const Image &b) {
+bool is_color(const std::string &layer) { return layer == "R" || layer == "G" || layer == "B"; }
+
+std::string names_of(const Image &image) {
     std::vector<std::string> names;
-    for (const Layer &layer : a.layers)
-        if (!is_variance(layer.name) && !b.find(layer.name))
-            names.push_back(layer.name);
+    for (const Layer &layer : image.layers)
+        names.push_back(layer.name);
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
-void check_layers(const Options &o, const Image &image, const Image &reference) {
+// Drops the layers that are not compared: all but R, G, B and the variances, without which there is no test.
+void keep_colors(const std::string &file, Image &image) {
+    std::vector<std::string> dropped;
+    std::erase_if(image.layers, [&](const Layer &layer) {
+        const bool drops = !is_color(layer.name) && !is_variance(layer.name);
+        if (drops)
+            dropped.push_back(layer.name);
+        return drops;
+    });
+    if (!dropped.empty())
+        note(fmt::format("{}: holds {}, which is left out", file, fmt::join(dropped, ", ")));
+}
+
+// Makes R, G and B the luminance (ITU-R BT.709). That of the variances does not follow from them.
+void to_luminance(Image &image) {
+    std::vector<float> values(image.get("R").values.size());
+    for (size_t i = 0; i < values.size(); i++)
+        values[i] = float(luminance({image.get("R").values[i], image.get("G").values[i], image.get("B").values[i]}));
+    std::erase_if(image.layers, [](const Layer &layer) { return is_variance(layer.name); });
+    for (Layer &layer : image.layers)
+        layer.values = values;
+}
+
+// Leaves in both images what they share: R, G, B, or luminance where one holds nothing else. Returns what it is.
+const char *share_layers(const Options &o, Image &image, Image &reference) {
     for (const auto &[file, read] : {std::pair(o.image, &image), std::pair(o.reference, &reference)})
         for (const char *name : {"R", "G", "B"})
             if (!read->find(name))
-                throw Error(fmt::format("{}: has no layer {}, which is compared", file, name));
-    for (const auto &[file, other, more] : {std::tuple{o.image, o.reference, missing_layers(image, reference)},
-                                            std::tuple{o.reference, o.image, missing_layers(reference, image)}})
-        if (!more.empty())
-            note(fmt::format("{}: holds {}, which {} has not and which is left out", file, more, other));
+                throw Error(
+                    fmt::format("{}: has no layer {}, which is compared; it holds {}", file, name, names_of(*read)));
+    keep_colors(o.image, image);
+    keep_colors(o.reference, reference);
+    if (image.is_luminance == reference.is_luminance)
+        return image.is_luminance ? "luminance" : "R, G, B";
+    to_luminance(image.is_luminance ? reference : image);
+    return "luminance";
 }
 
 // Cuts the image that holds the other one to its part. Throws Error if they are not of one whole image, or neither
@@ -189,7 +217,7 @@ int run(const Options &o) {
     }
     prepare_json(o.json);
     Image image = read_exr(o.image), reference = read_exr(o.reference);
-    check_layers(o, image, reference);
+    const std::string shared = share_layers(o, image, reference);
     align(o, image, reference);
     if (const std::string a = image.text("opal.scene_hash"), b = reference.text("opal.scene_hash");
         !a.empty() && !b.empty() && a != b)
@@ -208,14 +236,17 @@ int run(const Options &o) {
     metrics.max_x += place.x;
     metrics.max_y += place.y;
     nlohmann::json report = json_of(metrics);
-    report.update(object({{"image", o.image}, {"reference", o.reference}}));
+    report.update(object({{"image", o.image}, {"reference", o.reference}, {"compared", shared}}));
     const bool limited = o.limit >= 0, black = metrics.rel_mse_floor == 0; // black: relMSE leaves those pixels out
     const bool within_limit = metrics.rel_mse <= o.limit && (!black || metrics.mse == 0) && invalid.empty();
     if (limited)
         report.update(object({{"limit", o.limit}, {"within_limit", within_limit}}));
     if (!o.quiet)
-        print_text(text_of(metrics));
-    std::string untested = why_untested(o.image, image);
+        print_text(fmt::format("Compared: {}\n", shared) + text_of(metrics));
+    std::string untested =
+        image.is_luminance != reference.is_luminance
+            ? "the images share luminance alone, whose variance does not follow from those of R, G, B"
+            : why_untested(o.image, image);
     if (untested.empty())
         untested = why_untested(o.reference, reference);
     std::optional<stats::TileTest> test;

@@ -144,7 +144,7 @@ void print_scene(const SceneDescription &scene, const FlatScene &flat) {
     for (const MeshRecord &mesh : flat.meshes)
         different.insert(mesh.bsdf);
     row("bsdfs", "{} ({} different)", counts_text(bsdfs), different.size());
-    row("emitters", "{}", counts_text(emitters));
+    row("emitters", "{}{}", counts_text(emitters), scene.hides_emitters ? ", hidden from the camera" : "");
     for (const Light &light : scene.lights)
         row("", "{}: {}", emitter_name(light.kind()), parameters_text(light));
     row("meshes", "{}, {} triangles", scene.meshes.size(), flat.triangles.size());
@@ -234,6 +234,7 @@ nlohmann::json json_of(const SceneDescription &scene, const FlatScene &flat, int
                                   {"spp", scene.spp},
                                   {"triangles", flat.triangles.size()},
                                   {"emitters", flat.emitters.size()},
+                                  {"hides_emitters", scene.hides_emitters},
                                   {"lanes", lanes},
                                   {"strategy", strategy_json(scene)},
                                   {"plugins", nlohmann::json::array()},

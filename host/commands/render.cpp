@@ -164,6 +164,7 @@ struct Request {
     ImageFiles files;
     Display display;  // of the PNG
     std::string json; // for write_json
+    bool variance;    // layers of the EXR: --layers, or the scene
     double load_seconds;
 };
 
@@ -191,7 +192,8 @@ Request prepare(const Options &o) {
         if (o.scenes.size() == 1) // else check_several has noted them all
             note_output(file);
     }
-    check_image_size(request.files, scene.camera.window(), o.layers == "variance");
+    request.variance = o.layers == "variance" || scene.wants_variance;
+    check_image_size(request.files, scene.camera.window(), request.variance);
     request.load_seconds = load.seconds();
     constexpr size_t most_faces = 300'000; // 0.03 s; `opal inspect` looks at all
     for (const std::string &line : scene_warnings(scene, most_faces))
@@ -329,7 +331,7 @@ int render_scene(const Options &o) {
                                    .compile = rendered.compile_seconds,
                                    .render = rendered.kernel_seconds};
     return report(request, rendered, {scene, rendered.film, pick.info, build.lanes, o.seed, seconds}, choice,
-                  o.layers == "variance");
+                  request.variance);
 }
 
 // Throws UsageError if the images of several scenes cannot go to files of their own, or one is a scene. All are noted

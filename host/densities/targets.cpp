@@ -78,13 +78,17 @@ std::string example_value(ParameterType type) {
     }
 }
 
-// An object as a scene would say it, so that defaults and checks are the scene's; `others`: known parameters that are
-// none of its own.
+// An object as a scene would say it, so that defaults and checks are the scene's. BSDFs within it are diffuse.
+// `others`: known parameters that are none of its own.
 XmlDocument xml_of(const std::string &tag, const std::string &kind, std::span<const Parameter> rows,
                    const Parameters &parameters, const std::string &target, std::set<std::string> others = {}) {
     std::string xml = fmt::format("<{} type=\"{}\">", tag, kind);
     for (const Parameter &row : rows) {
         const std::string name = with_hyphens(row.name);
+        if (row.type == ParameterType::BSDF) {
+            xml += "<bsdf type=\"diffuse\"/>";
+            continue;
+        }
         others.insert(name);
         const auto found = parameters.find(name);
         if (found == parameters.end() && !std::isnan(row.initial))
@@ -186,10 +190,18 @@ Target open_light(const std::string &name, const Parameters &parameters, const P
     return target;
 }
 
+bool is_nested(const Parameter &parameter) { return parameter.type == ParameterType::BSDF; }
+
+// A BSDF whose directions have a density, or one that leads to others.
+bool has_density(uint kind) {
+    return (bsdf_traits(kind) & OPAL_SMOOTH) || std::ranges::any_of(bsdf_parameters(kind), is_nested);
+}
+
 std::string names_of(std::span<const Parameter> parameters) {
     std::vector<std::string> names;
     for (const Parameter &parameter : parameters)
-        names.push_back(with_hyphens(parameter.name));
+        if (!is_nested(parameter))
+            names.push_back(with_hyphens(parameter.name));
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
@@ -199,7 +211,7 @@ std::vector<TargetName> all_targets() {
         if (const auto help = warp_help.find(warp.name); help != warp_help.end())
             warp.help = help->second;
     for (uint kind = 0; kind < BSDF_COUNT; kind++)
-        if (bsdf_traits(kind) & OPAL_SMOOTH) {
+        if (has_density(kind)) {
             const std::string own = names_of(bsdf_parameters(kind));
             names.push_back({fmt::format("bsdf:{}", bsdf_name(kind)), own + (own.empty() ? "" : ", ") + "theta, phi",
                              "reflected directions of the material for an incident direction"});
@@ -233,11 +245,12 @@ std::vector<TargetParameter> all_parameters() {
             add_meaning(all, parameter, warp_name(warp), fmt::format("above 0 [{:g}]", otherwise));
     const auto add_rows = [&](const char *owner, std::span<const Parameter> rows) {
         for (const Parameter &p : rows)
-            add_meaning(all, with_hyphens(p.name), owner,
-                        fmt::format("{}, {} [{}]", p.meaning, text_of(p), text_of_initial(p)));
+            if (!is_nested(p))
+                add_meaning(all, with_hyphens(p.name), owner,
+                            fmt::format("{}, {} [{}]", p.meaning, text_of(p), text_of_initial(p)));
     };
     for (uint kind = 0; kind < BSDF_COUNT; kind++)
-        if (bsdf_traits(kind) & OPAL_SMOOTH)
+        if (has_density(kind))
             add_rows(bsdf_name(kind), bsdf_parameters(kind));
     for (uint kind = 0; kind < EMITTER_COUNT; kind++)
         if (is_light_target(kind))

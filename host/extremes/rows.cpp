@@ -52,6 +52,16 @@ Mesh lamp_over(Vec3 at, double side, double radiance) {
     return light(Parallelogram{at - Vec3{side / 2, 0, side / 2}, {side, 0, 0}, {0, 0, side}}, radiance);
 }
 
+SceneDescription masked_floor(double opacity) {
+    bsdf_mask_record record;
+    record.opacity = opacity;
+    Bsdf mask = record;
+    mask.children = {diffuse(0.5)};
+    SceneDescription scene = floor_under(lamp_over({0, 1, 0}, 1, 1), mask);
+    scene.meshes.push_back(light(quad({-2, -0.5, -2}, {0, 0, 4}, {4, 0, 0}), 1)); // below, facing up
+    return scene;
+}
+
 SceneDescription light_of_size(double side) {
     return floor_under(lamp_over({0, 1, 0}, side, side < 1 ? 1 / (side * side) : 1), diffuse(0.5));
 }
@@ -368,6 +378,13 @@ const std::vector<StressRow> &stress_rows() {
          .promised_from = 0,
          .promised_to = 1e6,
          .picture = phong_floor},
+        {.name = "opacity",
+         .stretched = "opacity of a masked floor before a light",
+         .values = joined({0}, decades(-8, 0)),
+         .start = 1,
+         .promised_from = 0,
+         .promised_to = 1,
+         .picture = masked_floor},
         {.name = "ior",
          .stretched = "index of a cube of glass",
          .values = {1 - 1e-6, 1, 1 + 1e-6, 1 + 1e-3, 1.5, 2, 10, 100},

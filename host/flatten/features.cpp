@@ -24,8 +24,8 @@ std::string plural(std::size_t count, const char *one, const char *many) {
 constexpr std::size_t large_tree_bytes = 4 << 20;
 
 // Paths up to this length are finished in the launch that starts them: roulette's own longest ones, in a scene that
-// loses no light, have 1 / (1 - ROULETTE_MOST) = 10 000 segments on the average (integrators/steps.cl).
-constexpr double roulette_most = 0.9999, longest_path_of_a_launch = 2 / (1 - roulette_most);
+// loses no light, have 1 / (1 - 0.9999) = 10 000 segments on the average by default (--rr-max).
+constexpr double longest_path_of_a_launch = 2 / (1 - 0.9999);
 
 // The segments of a path that loses no light, on the average.
 double longest_path(const Strategy &strategy) {
@@ -34,7 +34,8 @@ double longest_path(const Strategy &strategy) {
         return 1;
     if (strategy[AXIS_rr] == CHOICE_rr_off)
         return limit;
-    const double survival = strategy[AXIS_rr] == CHOICE_rr_fixed ? drawn_probability(strategy.rr_prob) : roulette_most;
+    const double survival =
+        strategy[AXIS_rr] == CHOICE_rr_fixed ? drawn_probability(strategy.rr_prob) : strategy.rr_max;
     return std::min(limit, strategy.rr_depth + 1 / (1 - survival));
 }
 
@@ -239,6 +240,11 @@ bool general_has(unsigned feature, int lanes) {
     return feature != FEATURE_large_tree;
 }
 
+// Features whose scenes have a general kernel of their own, which does not ask at run time.
+bool has_general_kernel(unsigned feature) {
+    return feature == FEATURE_endless_paths || feature == FEATURE_hidden_emitters || feature == FEATURE_uv;
+}
+
 // Features of a second program for all scenes, which serves scenes that have one of these. Scenes of Nori's own kinds
 // have none, and would be slower with the second.
 bool is_second_general(unsigned feature) {
@@ -285,7 +291,7 @@ Features find_features(const SceneDescription &description, const FlatScene &sce
         second_general = second_general || (is_second_general(i) && decisions[i].on);
     for (unsigned i = 0; i < FEATURE_COUNT; i++)
         features.list[i] =
-            specialise || i == FEATURE_endless_paths || i == FEATURE_uv // general kernels of their own
+            specialise || has_general_kernel(i)
                 ? Feature{decisions[i].on, decisions[i].reason}
                 : Feature{general_has(i, lanes) && (second_general || !is_second_general(i)), "the general kernel"};
     for (int axis = 0; axis < AXIS_COUNT; axis++) {

@@ -63,19 +63,24 @@ void fill_film(const Camera &camera, Settings &settings) {
 }
 
 void fill_strategy(const SceneDescription &description, const Flattening &flattening, Settings &settings) {
+    const Strategy &strategy = description.strategy;
     settings.spp = description.spp;
-    settings.max_depth = description.strategy.max_depth;
-    settings.rr_depth = description.strategy.rr_depth;
-    settings.rr_prob = float(drawn_probability(description.strategy.rr_prob));
-    settings.rr_max = float(drawn_probability(description.strategy.rr_max));
-    settings.emitter_samples = description.strategy.emitter_samples;
-    settings.bsdf_samples = description.strategy.bsdf_samples;
+    settings.max_depth = strategy.max_depth;
+    settings.rr_depth = strategy.rr_depth;
+    settings.rr_prob = float(drawn_probability(strategy.rr_prob));
+    // Rounded as the device's numbers are, before it is put on their grid.
+    const bool in_double = strategy.math == MathMode::double_precision;
+    settings.rr_max = float(drawn_probability(in_double ? strategy.rr_max : double(float(strategy.rr_max))));
+    const bool counts = integrator_of(strategy).has(OPAL_ONE_SAMPLE_MIS); // the others take one sample of each kind
+    settings.emitter_samples = counts ? strategy.emitter_samples : 1;
+    settings.bsdf_samples = counts ? strategy.bsdf_samples : 1;
+    settings.lights_reflect = description.lights_reflect;
     settings.normals_signed = description.normals_signed;
     settings.visibility_length = float(description.visibility_length * flattening.scale);
     store((description.simple_light.position - flattening.center) * flattening.scale, settings.light_position);
     for (int i = 0; i < 3; i++)
         settings.light_energy[i] = float(description.simple_light.energy[i] * flattening.scale * flattening.scale);
-    std::copy(description.strategy.choices.begin(), description.strategy.choices.end(), settings.choices);
+    std::copy(strategy.choices.begin(), strategy.choices.end(), settings.choices);
 }
 
 // The words of a material after --hemisphere, so that the device need not read the option.
@@ -92,13 +97,17 @@ public:
     BsdfGatherer(int hemisphere, FlatScene &scene)
         : hemisphere_(hemisphere), table_(scene.bsdfs), textures_(scene.textures, scene.texels) {}
 
-    // Returns the first word of the record. BSDFs come after those that they lead to.
+    // Returns the first word of the record. BSDFs come after those that they lead to. A twosided with one BSDF has it
+    // on both sides.
     uint add(const Bsdf &bsdf) {
         std::vector<uint> words = words_with_hemisphere(bsdf, hemisphere_);
         auto child = bsdf.children.begin();
         for (const Parameter &parameter : bsdf_parameters(bsdf.kind()))
-            if (parameter.type == ParameterType::BSDF)
-                words[parameter.word] = add(*child++);
+            if (parameter.type == ParameterType::BSDF) {
+                words[parameter.word] = add(*child);
+                if (child + 1 != bsdf.children.end())
+                    ++child;
+            }
         for (const auto &[word, texture] : bsdf.textures)
             words[word] = textures_.add(texture);
         const auto [found, is_new] = known_.try_emplace(words, uint(table_.size()));

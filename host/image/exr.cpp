@@ -120,6 +120,20 @@ int picture_part(const Imf::MultiPartInputFile &file) {
     return 0;
 }
 
+// Makes R, G, B of the channels X, Y, Z: CIE XYZ with white D65, linear sRGB (IEC 61966-2-1).
+void to_linear_srgb(Image &image) {
+    constexpr double matrix[3][3] = {
+        {3.240479, -1.537150, -0.498535}, {-0.969256, 1.875991, 0.041556}, {0.055648, -0.204043, 1.057311}};
+    std::array<Layer, 3> xyz = {image.get("X"), image.get("Y"), image.get("Z")};
+    std::erase_if(image.layers, [](const Layer &l) { return l.name == "X" || l.name == "Y" || l.name == "Z"; });
+    for (size_t c = 0; c < channel_names.size(); c++) {
+        Layer &layer = image.layers.emplace_back(Layer{channel_names[c], std::vector<float>(xyz[0].values.size())});
+        for (size_t i = 0; i < layer.values.size(); i++)
+            for (size_t k = 0; k < xyz.size(); k++)
+                layer.values[i] += float(matrix[c][k] * double(xyz[k].values[i]));
+    }
+}
+
 // Gives the picture's channels the names R, G, B, where it has others.
 void name_channels(const std::filesystem::path &file, Image &image) {
     if (image.find("R"))
@@ -143,11 +157,17 @@ void name_channels(const std::filesystem::path &file, Image &image) {
             rename({stem + "R", stem + "G", stem + "B"});
             return;
         }
+    if (image.find("X") && image.find("Y") && image.find("Z")) {
+        to_linear_srgb(image);
+        note(fmt::format("{}: takes the channels X, Y, Z, as linear sRGB", file.string()));
+        return;
+    }
     if (const Layer *grey = image.find("Y"); grey && !image.find("RY")) {
         const std::vector<float> values = grey->values;
         std::erase_if(image.layers, [](const Layer &layer) { return layer.name == "Y"; });
         for (const char *name : channel_names)
             image.layers.push_back({name, values});
+        image.is_luminance = true;
         note(fmt::format("{}: takes the channel Y for R, G and B", file.string()));
     }
 }

@@ -26,6 +26,7 @@ struct Image {
     std::vector<Layer> layers;
     std::map<std::string, Attribute> metadata; // attributes of the EXR header
     Crop crop{};                               // all 0: the whole image
+    bool is_luminance = false;                 // R, G and B are the one channel Y of a file
 
     const Layer *find(const std::string &name) const;     // nullptr where there is none
     const Layer &get(const std::string &name) const;      // Error that lists the layers
@@ -39,8 +40,9 @@ std::string text_of(const Crop &crop);               // "32 x 24", of a part: "8
 Image cropped(const Image &image, const Crop &part); // the part, which the image must hold
 
 // Reads every float and half channel of the part that holds the picture: of several parts the one named rgb, beauty or
-// Combined, else the first with R, G, B. Channels r g b, Y alone and *.Combined.R, .G, .B become R, G, B. Notes tell
-// what was chosen. A data window within a larger display window is a crop, as the attribute opal.crop is.
+// Combined, else the first with R, G, B. Channels r g b, X Y Z (CIE XYZ with white D65), Y alone and *.Combined.R, .G,
+// .B become R, G, B. Notes tell what was chosen. A data window within a larger display window is a crop, as the
+// attribute opal.crop is.
 Image read_exr(const std::filesystem::path &file, FileHashes *hashes = nullptr); // hashes: gets that of the bytes
 
 // Writes the form that most programs read right (measured): one part of scanlines, float32, ZIPS, both windows from

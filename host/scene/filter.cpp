@@ -10,6 +10,12 @@ namespace opal {
 
 namespace {
 
+// sin(pi x) / (pi x), x not negative. Below the threshold it rounds to 1.
+template <class Real> Real sinc(Real x) {
+    const Real angle = Real(std::numbers::pi) * x;
+    return x > Real(1e-9) ? std::sin(angle) / angle : Real(1);
+}
+
 // filter_1d of the device. Real: float, or double to tell rounding.
 template <class Real> Real weight_of(const Filter &filter, Real distance) {
     const Real a = std::abs(distance), radius = Real(float(filter.radius));
@@ -22,10 +28,8 @@ template <class Real> Real weight_of(const Filter &filter, Real distance) {
         const Real stddev = Real(float(filter.stddev)), falloff = Real(-0.5) / (stddev * stddev);
         return std::max(std::exp(falloff * a * a) - std::exp(falloff * radius * radius), Real(0));
     }
-    case FILTER_lanczos: { // sinc(a) sinc(a / radius)
-        const Real x = Real(std::numbers::pi) * a;
-        return a == 0 ? Real(1) : std::sin(x) / x * (std::sin(x / radius) / (x / radius));
-    }
+    case FILTER_lanczos:
+        return sinc(a) * sinc(a / radius);
     case FILTER_mitchell: {
         const Real t = 2 * a / radius, t2 = t * t, b = Real(float(filter.b)), c = Real(float(filter.c));
         return (t < 1 ? ((12 - 9 * b - 6 * c) * t + (-18 + 12 * b + 6 * c)) * t2 + (6 - 2 * b)
@@ -72,7 +76,9 @@ std::string filter_text(const Filter &filter) {
 #define OPAL_NAME(name) #name,
     static const char *const names[] = {OPAL_FILTERS(OPAL_NAME)};
 #undef OPAL_NAME
-    return fmt::format("{}, radius {:g} pixels", names[filter.kind], filter.radius);
+    const bool is_spline = filter.kind == FILTER_mitchell && filter.b == 0 && filter.c == 0.5;
+    return fmt::format("{}, radius {:g} pixels", is_spline ? "catmullrom (mitchell of B 0, C 0.5)" : names[filter.kind],
+                       filter.radius);
 }
 
 double filter_extent(const Filter &filter) {
@@ -90,6 +96,8 @@ std::string filter_problem(const Filter &filter) {
                 return fmt::format("{}, stddev {:g}: {}; possible: a radius above 0.5, and a stddev from 0.08 to 10 "
                                    "times the radius",
                                    filter_text(filter), filter.stddev, what);
+            if (filter.kind == FILTER_lanczos)
+                return fmt::format("{}: {}; possible: a radius above 0.5", filter_text(filter), what);
             return fmt::format("{}, B {:g}, C {:g}: {}; possible: a radius above 1, and B and C from 0 to 1",
                                filter_text(filter), filter.b, filter.c, what);
         }

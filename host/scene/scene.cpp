@@ -25,13 +25,12 @@ const char *bsdf_name(unsigned kind) {
 
 unsigned bsdf_traits(unsigned kind) {
 #define OPAL_BSDF_TRAITS(name, traits) traits,
-#define OPAL_NO_TRAITS(name, refused) 0,
-    static const unsigned all[] = {OPAL_BSDFS(OPAL_BSDF_TRAITS) OPAL_NESTING_BSDFS(OPAL_NO_TRAITS)};
+    static const unsigned all[] = {OPAL_ALL_BSDFS(OPAL_BSDF_TRAITS)};
     return all[kind];
 }
 
 unsigned Bsdf::traits() const {
-    unsigned traits = bsdf_traits(kind());
+    unsigned traits = bsdf_traits(kind()) & ~OPAL_HOLDS_OPAQUE;
     for (const Bsdf &child : children)
         traits |= child.traits();
     return traits;

@@ -34,14 +34,14 @@ inline const std::string &name_of(Dialect dialect) { return dialects()[static_ca
 
 // Names of kinds, as the XML gives them: "diffuse".
 const char *bsdf_name(unsigned kind);   // kind: BSDF_*
-unsigned bsdf_traits(unsigned kind);    // OPAL_SMOOTH and so on, as bits; 0 of a kind that leads to others
+unsigned bsdf_traits(unsigned kind);    // OPAL_SMOOTH and so on, as bits; of a kind that leads to others its own
 const char *camera_name(unsigned kind); // kind: CAMERA_*
 
 // A material: the record of its kind, ready for the device but for the places of the BSDFs that it leads to. By default
 // a grey diffuse one.
 struct Bsdf {
     std::vector<uint> words;            // of a bsdf_NAME_record
-    std::vector<Bsdf> children;         // of its parameters of type BSDF, in their order
+    std::vector<Bsdf> children;         // of its parameters of type BSDF, in order; one stands for both of twosided
     std::map<size_t, Texture> textures; // what multiplies parameters, by Parameter::texture_word
     SourcePlace place;
 
@@ -117,6 +117,8 @@ struct SceneDescription {
     std::map<std::string, std::string> definitions; // the values that stand for $name in the file
     Strategy strategy;
     bool hides_emitters = false; // rays of the camera pass emitters, and see no environment
+    bool lights_reflect = false; // direct_lighting: surfaces that emit show the light that they reflect, too
+    bool wants_variance = false; // the EXR gets the layers of --layers variance
     bool normals_signed = false;
     SimpleLight simple_light;
     double visibility_length = 1; // integrator av: how far it looks

@@ -25,6 +25,8 @@ bool has_hit_light(const SceneDescription &scene) {
 void check_numbers(const Strategy &strategy) {
     if (!(strategy.rr_prob > 0 && strategy.rr_prob <= 1))
         refuse("rr-prob " + std::to_string(strategy.rr_prob), "a probability to survive is above 0 and at most 1");
+    if (!(strategy.rr_max > 0 && strategy.rr_max <= 1))
+        refuse(fmt::format("rr-max {}", strategy.rr_max), "a probability to survive is above 0 and at most 1");
     if (strategy.max_depth < 1)
         refuse("max-depth 0", "the shortest path has one segment and shows the lights");
 }
@@ -48,6 +50,10 @@ void check_mis(const Strategy &strategy) {
                "one sample of either kind cannot be counted in and go on as a path; available: " + joined(others));
     if (!can_take_one_sample(strategy))
         refuse("mis one-sample without lighting mis", "there is only one kind of sample, and nothing to choose from");
+    if (strategy.emitter_samples > 1 || strategy.bsdf_samples > 1)
+        refuse(fmt::format("mis one-sample with emitter-samples {} and bsdf-samples {}", strategy.emitter_samples,
+                           strategy.bsdf_samples),
+               "it takes one sample of either kind; available: " + joined(others));
 }
 
 void check_lighting(const SceneDescription &scene) {

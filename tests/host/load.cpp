@@ -230,7 +230,15 @@ TEST_CASE_METHOD(LoadFixture, "filters by type", "[load]") {
     CHECK(mitchell.b == 0);
     CHECK(mitchell.c == 1.0 / 3);
     CHECK_THAT(error_in("<camera type='perspective'>\n<rfilter type='sinc'/></camera>"),
-               Catch::Equals(":3:1: unknown rfilter type 'sinc'; available: box, tent, gaussian, mitchell"));
+               Catch::Equals(":3:1: unknown rfilter type 'sinc'; available: box, tent, gaussian, mitchell, lanczos, "
+                             "catmullrom"));
+    const Filter lanczos = filter("<rfilter type='lanczos'/>"), spline = filter("<rfilter type='catmullrom'/>");
+    CHECK(lanczos.kind == FILTER_lanczos);
+    CHECK(lanczos.radius == 3);
+    CHECK((spline.kind == FILTER_mitchell && spline.radius == 2 && spline.b == 0 && spline.c == 0.5));
+    CHECK_THAT(error_in("<camera type='perspective'>\n<rfilter type='lanczos'><float name='radius' "
+                        "value='0.5'/></rfilter></camera>"),
+               Catch::Contains("possible: a radius above 0.5"));
 }
 
 TEST_CASE_METHOD(LoadFixture, "filters whose weights vanish, cancel or overflow fail at their place", "[load]") {
@@ -278,8 +286,8 @@ TEST_CASE_METHOD(LoadFixture, "camera values that make no sense fail at their pl
                Catch::StartsWith(":4:1: "));
     CHECK_THAT(property_error("camera", "perspective", "<float name='nearClip' value='-1'/>"),
                Catch::StartsWith(":4:1: "));
-    CHECK(property_error("camera", "spherical", "") ==
-          ":3:1: unknown camera type 'spherical'; available: perspective, thinlens, orthographic, thin_lens");
+    CHECK_THAT(property_error("camera", "fisheye", ""),
+               Catch::StartsWith(":3:1: unknown camera type 'fisheye'; available: perspective"));
     CHECK(property_error("camera", "perspective", "<float name='fov' value='1e-6'/>").empty());
 }
 
@@ -323,7 +331,14 @@ TEST_CASE_METHOD(LoadFixture, "BSDF values that make no sense fail at their plac
     CHECK_THAT(bsdf_error("phong", "<float name='n' value='-1'/>"), Catch::StartsWith(":4:1: "));
     CHECK_THAT(bsdf_error("twosided", "<bsdf type='dielectric'/>"),
                Catch::EndsWith("a twosided cannot hold a BSDF that light passes through"));
-    CHECK_THAT(bsdf_error("twosided", ""), Catch::EndsWith("a twosided has 1 <bsdf> within it, not 0"));
+    CHECK_THAT(bsdf_error("twosided", ""), Catch::EndsWith("a twosided has 1 or 2 <bsdf> within it, not 0"));
+    CHECK_THAT(bsdf_error("mask", ""), Catch::EndsWith("a mask has 1 <bsdf> within it, not 0"));
+    CHECK_THAT(bsdf_error("mask", "<float name='opacity' value='1.1'/><bsdf type='diffuse'/>"),
+               Catch::StartsWith(":4:1: property 'opacity': must be 0 to 1"));
+    for (const char *passes : {"<bsdf type='null'/>", "<bsdf type='mask'><bsdf type='diffuse'/></bsdf>",
+                               "<bsdf type='diffuse'/><bsdf type='dielectric'/>"})
+        CHECK_THAT(bsdf_error("twosided", passes),
+                   Catch::EndsWith("a twosided cannot hold a BSDF that light passes through"));
     CHECK_THAT(bsdf_error("diffuse", "<bsdf type='mirror'/>"), Catch::Contains("bsdf"));
     CHECK_THAT(
         bsdf_error("difuse", ""),

@@ -102,6 +102,9 @@ TEST_CASE("overrides set axes and numbers", "[strategy]") {
                              {"max-depth", "7"},
                              {"rr-depth", "5"},
                              {"rr-prob", "0.8"},
+                             {"rr-max", "0.95"},
+                             {"emitter-samples", "4"},
+                             {"bsdf-samples", "2"},
                              {"math", "fast"},
                              {"lanes", "16"},
                              {"specialise", "off"}});
@@ -115,6 +118,9 @@ TEST_CASE("overrides set axes and numbers", "[strategy]") {
     CHECK(s.max_depth == 7);
     CHECK(s.rr_depth == 5);
     CHECK(s.rr_prob == 0.8);
+    CHECK(s.rr_max == 0.95);
+    CHECK(s.emitter_samples == 4);
+    CHECK(s.bsdf_samples == 2);
     CHECK(s.math == MathMode::fast);
     CHECK(s.lanes == 16);
     CHECK(s.specialise == Specialise::off);
@@ -126,8 +132,9 @@ TEST_CASE("overrides set axes and numbers", "[strategy]") {
 }
 
 TEST_CASE("every option that is listed can be set", "[strategy]") {
-    std::map<std::string, std::string> values = {{"max-depth", "none"}, {"rr-depth", "3"}, {"rr-prob", "0.5"},
-                                                 {"math", "fast"},      {"lanes", "8"},    {"specialise", "on"}};
+    std::map<std::string, std::string> values = {{"max-depth", "none"}, {"rr-depth", "3"},        {"rr-prob", "0.5"},
+                                                 {"rr-max", "0.95"},    {"emitter-samples", "4"}, {"bsdf-samples", "2"},
+                                                 {"math", "fast"},      {"lanes", "8"},           {"specialise", "on"}};
     size_t count = 0;
     for (const StrategyOption &option : strategy_options()) {
         bool is_number = values.contains(option.name);
@@ -152,7 +159,9 @@ TEST_CASE("bad overrides say what was possible", "[strategy]") {
     CHECK(override_error("max-depth", "deep") == "'deep' is not an integer");
     CHECK(override_error("rr-depth", "-3") == "rr-depth must be at least 1, not -3");
     for (const char *bad : {"0", "1.1", "-1"})
-        CHECK_THAT(override_error("rr-prob", bad), Catch::Contains("above 0 and at most 1, not " + std::string(bad)));
+        for (const char *option : {"rr-prob", "rr-max"})
+            CHECK_THAT(override_error(option, bad), Catch::Contains("above 0 and at most 1, not " + std::string(bad)));
+    CHECK(override_error("emitter-samples", "0") == "emitter-samples must be at least 1, not 0");
     CHECK(override_error("rr-prob", "nan") == "'nan' is not a finite number in single precision");
     CHECK(override_error("lanes", "2") == "unknown lanes '2'; available: auto, 1, 4, 8, 16");
     CHECK(override_error("math", "exact") == "unknown math 'exact'; available: precise, fast, double");

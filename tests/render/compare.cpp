@@ -112,10 +112,38 @@ TEST_CASE("A layer or an alpha more is noted, and the figures are those of R, G,
     folder.put("more.exr", more);
     const Outcome outcome = folder.compare("a.exr more.exr");
     CHECK(outcome.exit_code == 0);
-    CHECK_THAT(outcome.err,
-               Catch::Contains("note: more.exr: holds A, depth, which a.exr has not and which is left out"));
+    CHECK_THAT(outcome.err, Catch::Contains("note: more.exr: holds A, depth, which is left out"));
     CHECK(outcome.out == folder.compare("a.exr b.exr").out);
     CHECK(folder.compare("more.exr a.exr").exit_code == 0);
+}
+
+TEST_CASE("Luminance alone is held against the other's luminance, and XYZ against RGB", "[compare]") {
+    const ImageFolder folder;
+    Image color = noisy(1, 1), grey{32, 24, {{"Y", {}}}, {}}, xyz{32, 24, {{"X", {}}, {"Y", {}}, {"Z", {}}}, {}};
+    for (size_t i = 0; i < 32 * 24; i++) {
+        const float r = color.layers[0].values[i], g = color.layers[1].values[i] *= 2, b = color.layers[2].values[i];
+        grey.layers[0].values.push_back(0.212671f * r + 0.715160f * g + 0.072169f * b);
+        xyz.layers[0].values.push_back(0.412453f * r + 0.357580f * g + 0.180423f * b);
+        xyz.layers[1].values.push_back(grey.layers[0].values.back());
+        xyz.layers[2].values.push_back(0.019334f * r + 0.119193f * g + 0.950227f * b);
+    }
+    folder.put("color.exr", color);
+    folder.put("grey.exr", grey);
+    folder.put("xyz.exr", xyz);
+    for (const auto &[pair, compared, untested] :
+         {std::tuple{"color.exr grey.exr", "luminance", "share luminance alone"},
+          {"grey.exr color.exr", "luminance", "share luminance alone"},
+          {"xyz.exr grey.exr", "luminance", "share luminance alone"},
+          {"grey.exr grey.exr", "luminance", "grey.exr holds no layer variance.R"},
+          {"color.exr xyz.exr", "R, G, B", "xyz.exr holds no layer variance.R"}}) {
+        INFO(pair);
+        const auto report = folder.json(pair);
+        CHECK(report["compared"] == compared);
+        CHECK(report["max_difference"].get<double>() < 1e-5);
+        CHECK_THAT(report["untested"].get<std::string>(), Catch::Contains(untested));
+    }
+    CHECK_THAT(folder.compare("color.exr grey.exr").out, Catch::StartsWith("Compared: luminance\n"));
+    CHECK_THAT(folder.compare("color.exr color.exr").out, Catch::StartsWith("Compared: R, G, B\n"));
 }
 
 TEST_CASE("Pixels that are not finite never pass for equal", "[compare]") {
@@ -202,7 +230,9 @@ TEST_CASE("What cannot be compared is refused with what differs", "[compare]") {
     Image no_green = noisy(1, 1);
     no_green.layers.erase(no_green.layers.begin() + 1);
     folder.put("no_green.exr", no_green);
-    refused("a.exr no_green.exr", "no_green.exr: has no layer G");
+    refused("a.exr no_green.exr", "no_green.exr: has no layer G, which is compared; it holds B, R");
+    folder.put("depth.exr", Image{32, 24, {{"dd.y.T", std::vector<float>(32 * 24)}}, {}});
+    refused("a.exr depth.exr", "depth.exr: has no layer R, which is compared; it holds dd.y.T");
     Image part = noisy(1, 1), other = noisy(1, 1);
     part.crop = {0, 0, 32, 24, 40, 24};
     other.crop = {8, 0, 32, 24, 40, 24};

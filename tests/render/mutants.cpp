@@ -62,8 +62,8 @@ const std::vector<Control> lights = {
       "return 1 / GATHER(real, scene->light_triangles, row, .inverse_pdf);"},
      "triangle light",
      check_triangle_light},
-    {{"MIS by the light's density alone where a light is sampled", "integrators/steps.cl", "bsdf.pdf * inverse_pdf)",
-      "inverse_pdf)"},
+    {{"MIS by the light's density alone where a light is sampled", "integrators/steps.cl",
+      "real ratio = bsdf.pdf * inverse_pdf;", "real ratio = inverse_pdf;"},
      "triangle light",
      check_triangle_light},
     {{"lights sampled from behind", "emitters/area_light.cl", "(v3_dot(shading_normal, to_light) < 0)",
@@ -131,9 +131,63 @@ const std::vector<Control> strategies = {
      check_agreement},
 };
 
+const std::vector<Control> passing = {
+    {{"a mask's light not times its opacity", "bsdfs/dispatch.cl", "r.f = v3_scale(r.f, s->opacity);", ""},
+     "masks",
+     check_masks},
+    {{"a mask's density not times its opacity", "bsdfs/dispatch.cl", "r.pdf = r.pdf * drawn;", ""},
+     "masks",
+     check_masks},
+    {{"masks passed without division", "bsdfs/dispatch.cl", "(1 - s->opacity) / meets.probability", "1 - s->opacity"},
+     "masks",
+     check_masks},
+    {{"of nested masks the inner one alone", "bsdfs/mask.cl", "o.opacity * b.opacity", "b.opacity"},
+     "masks",
+     check_masks},
+    {{"light behind masks taken for sampled", "bsdfs/interface.cl", "v3_all(weight), (real)(0), (real)(1), ALL_LANES)",
+      "v3_all(weight), (real)(0), (real)(1), NO_LANES)"},
+     "masks",
+     check_masks},
+    {{"mixed BSDFs followed as discrete ones by direct_lighting", "integrators/direct_lighting.cl",
+      "by_bsdf = MIXED_BSDFS ? active : active & discrete", "by_bsdf = active & discrete"},
+     "masks",
+     check_masks},
+    {{"the first of several hidden emitters passed", "integrators/steps.cl", "passing = passing & is_hit(hit);",
+      "passing = NO_LANES;"},
+     "hidden emitters",
+     check_hidden_emitters},
+    {{"a sky hidden from all that comes after", "integrators/steps.cl", "path->straight & sample.passes",
+      "path->straight"},
+     "hidden emitters",
+     check_hidden_emitters},
+    {{"a hidden sky behind null", "integrators/steps.cl", "path->straight & sample.passes", "NO_LANES"},
+     "hidden emitters",
+     check_hidden_emitters},
+    {{"light samples weighed as one", "integrators/steps.cl", "ratio = ratio / light_samples_per_bsdf_sample(scene);",
+      ""},
+     "sample counts",
+     check_sample_counts},
+    {{"BSDF samples weighed as one", "integrators/steps.cl", "ratio = ratio * light_samples_per_bsdf_sample(scene);",
+      ""},
+     "sample counts",
+     check_sample_counts},
+    {{"BSDF samples added up", "integrators/direct_lighting.cl", "(real)(1 / (real1)scene->settings->bsdf_samples)",
+      "(real)(1)"},
+     "sample counts",
+     check_sample_counts},
+    {{"light samples added up", "integrators/direct_lighting.cl", "v3_scale(sum, (real)(1 / (real1)count))", "sum"},
+     "sample counts",
+     check_sample_counts},
+    {{"throughput kept for the next BSDF sample", "integrators/direct_lighting.cl",
+      "path->throughput = v3_pick(back, v3_all((real)(1)), path->throughput);", ""},
+     "sample counts",
+     check_sample_counts},
+};
+
 const std::vector<Control> choices = {
     {{"roulette by the survival that was wished for", "integrators/steps.cl",
-      "drawn_probability(real_min(survival, (real)(ROULETTE_MOST)))", "real_min(survival, (real)(ROULETTE_MOST))"},
+      "drawn_probability(real_min(survival, (real)(scene->settings->rr_max)))",
+      "real_min(survival, (real)(scene->settings->rr_max))"},
      "counted",
      check_counted},
     {{"what rounding takes from a path's sum is forgotten", "integrators/steps.cl",
@@ -208,6 +262,9 @@ TEST_CASE("Every mutant of the lights is killed", "[mutants][stat][long]") {
 }
 TEST_CASE("Every mutant of the strategies is killed", "[mutants][stat][long]") {
     require_all_killed(strategies, test_seed(32));
+}
+TEST_CASE("Every mutant of masks, hidden emitters and sample counts is killed", "[mutants][stat][long]") {
+    require_all_killed(passing, test_seed(35));
 }
 TEST_CASE("Every mutant of discrete choices is killed", "[mutants][stat][long]") {
     require_all_killed(choices, test_seed(34));

@@ -36,6 +36,15 @@ Findings check_counted(const Sources &sources, unsigned seed);
 // in a matte room, where direct_lighting, whitted and paths of two segments have one expectation; ambient occlusion.
 Findings check_agreement(const Sources &sources, unsigned seed);
 
+// Masks and null, hidden emitters, and several samples of a kind: known means in every strategy, by the general kernel;
+// then by kernels of each scene, at one lane and at the device's width.
+Findings check_masks(const Sources &sources, unsigned seed);
+Findings check_hidden_emitters(const Sources &sources, unsigned seed);
+Findings check_sample_counts(const Sources &sources, unsigned seed);
+Findings check_masks_specialised(unsigned seed);
+Findings check_hidden_emitters_specialised(unsigned seed);
+Findings check_sample_counts_specialised(unsigned seed);
+
 // The pixel filters: a constant picture, the sum of the weights, an edge whose blur is known.
 Findings check_filters(const Sources &sources, unsigned seed);
 

@@ -151,6 +151,8 @@ Findings check_albedos(const Sources &sources, unsigned seed) {
               luminance(Color{0.1, 0.2, 0.15}) + 0.8 * fresnel_reflectance(direction(degrees).z, 1.000277, 1.5));
     judge("diffuse", 50, 0.6f);
     judge("diffuse_uniform", 50, 0.6f);
+    for (double degrees : {0.0, 60.0, 130.0}) // what is reflected, and what passes
+        judge("mask_nested", degrees, 0.7 * 0.6 * (degrees < 90 ? 0.5 : 0) + (1 - 0.7 * 0.6));
     return findings;
 }
 

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace opal::test {
 
@@ -17,20 +18,27 @@ struct NamedFilter {
     std::function<double(double)> weight; // of a distance
 };
 
-double mitchell(double x) { // Mitchell and Netravali 1988, B = C = 1/3, radius 2
-    const double t = std::abs(x), b = 1.0 / 3, c = 1.0 / 3;
+double mitchell(double x, double b, double c) { // Mitchell and Netravali 1988, radius 2
+    const double t = std::abs(x);
     if (t >= 2)
         return 0;
     return t < 1 ? ((12 - 9 * b - 6 * c) * t * t * t + (-18 + 12 * b + 6 * c) * t * t + 6 - 2 * b) / 6
                  : ((-b - 6 * c) * t * t * t + (6 * b + 30 * c) * t * t + (-12 * b - 48 * c) * t + 8 * b + 24 * c) / 6;
 }
 
+double sinc(double x) { return x == 0 ? 1 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x); }
+
+constexpr int reach = 3; // pixels to each side, of the widest
+
 std::vector<NamedFilter> filters() {
-    return {{"box", Filter{FILTER_box, 0.5}, [](double x) { return std::abs(x) <= 0.5 ? 1.0 : 0.0; }},
-            {"tent", Filter{FILTER_tent, 1}, [](double x) { return std::max(0.0, 1 - std::abs(x)); }},
-            {"gaussian", Filter{FILTER_gaussian, 2, 0.5},
-             [](double x) { return std::abs(x) < 2 ? std::exp(-2 * x * x) - std::exp(-8.0) : 0.0; }},
-            {"mitchell", Filter{FILTER_mitchell, 2}, mitchell}};
+    return {
+        {"box", Filter{FILTER_box, 0.5}, [](double x) { return std::abs(x) <= 0.5 ? 1.0 : 0.0; }},
+        {"tent", Filter{FILTER_tent, 1}, [](double x) { return std::max(0.0, 1 - std::abs(x)); }},
+        {"gaussian", Filter{FILTER_gaussian, 2, 0.5},
+         [](double x) { return std::abs(x) < 2 ? std::exp(-2 * x * x) - std::exp(-8.0) : 0.0; }},
+        {"mitchell", Filter{FILTER_mitchell, 2}, [](double x) { return mitchell(x, 1.0 / 3, 1.0 / 3); }},
+        {"catmullrom", Filter{FILTER_mitchell, 2, 0, 0, 0.5}, [](double x) { return mitchell(x, 0, 0.5); }},
+        {"lanczos", Filter{FILTER_lanczos, 3}, [](double x) { return std::abs(x) < 3 ? sinc(x) * sinc(x / 3) : 0.0; }}};
 }
 
 double integral(const std::function<double(double)> &f, double from, double to) {
@@ -41,7 +49,7 @@ double integral(const std::function<double(double)> &f, double from, double to) 
     return sum * (to - from) / steps;
 }
 
-constexpr int width = 16, height = 404, middle = width / 2;
+constexpr int width = 16, height = 606, middle = width / 2;
 
 // A wall that emits 1, seen head-on; its edge runs down the image at column `edge`, bright on the left.
 SceneDescription half_lit(double edge) {
@@ -74,7 +82,7 @@ double value(const Film &film, int x, int y) {
 // f of rows far enough apart to share no sample.
 template <class F> stats::Sample over_rows(const Film &film, F f) {
     stats::Moments moments;
-    for (int y = 2; y + 2 < film.height; y += 4)
+    for (int y = reach; y + reach < film.height; y += 2 * reach)
         moments.add(f(y));
     return moments.sample();
 }
@@ -94,21 +102,22 @@ Findings check_filters(const Sources &sources, unsigned seed) {
 
         const double edge = middle + 0.3;
         const Film film = filtered(half_lit(edge), f.filter, spp, seed + 1, sources);
-        const double whole = integral(f.weight, -2, 2);
+        const double whole = integral(f.weight, -reach, reach);
         if (!film.weighted.empty()) // a pixel gets the weights of all samples around it
             findings.push_back(p_value(
                 f.name + ": the weights' sum",
                 stats::t_test(over_rows(film,
                                         [&](int y) {
                                             double sum = 0;
-                                            for (int x = 2; x + 2 < width; x += 4)
-                                                sum += film.weighted[size_t(y) * width + size_t(x)][3] / spp / 3;
+                                            for (int x = reach; x + reach < width; x += 2 * reach)
+                                                sum += film.weighted[size_t(y) * width + size_t(x)][3] / spp / 2;
                                             return sum;
                                         }),
                               whole * whole)
                     .p_value));
         for (int x = middle - 3; x <= middle + 3; x++) {
-            const double lit_share = integral(f.weight, -2, std::clamp(edge - (x + 0.5), -2.0, 2.0)) / whole;
+            const double lit_share =
+                integral(f.weight, -reach, std::clamp<double>(edge - (x + 0.5), -reach, reach)) / whole;
             findings.push_back(
                 p_value(f.name + ": edge at column " + std::to_string(x),
                         stats::t_test(over_rows(film, [&](int y) { return value(film, x, y); }), lit_share).p_value));

@@ -101,8 +101,6 @@ Bsdf parse_twosided(Importer &importer, Object &object) {
     for (const Bsdf &child : bsdf.children)
         if (child.traits() & OPAL_TRANSMITS)
             throw XmlError(child.place, "a twosided cannot hold a BSDF that light passes through");
-    if (bsdf.children.size() == 1)
-        bsdf.children.push_back(bsdf.children.front());
     return bsdf;
 }
 

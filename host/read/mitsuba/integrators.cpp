@@ -55,7 +55,10 @@ void parse_inner(Importer &importer, Object &object, SceneDescription &scene) {
         object.mistake(fmt::format("{} holds no <integrator> that renders", object.type()));
 }
 
-void parse_moment(Importer &importer, Object &object, SceneDescription &scene) { parse_inner(importer, object, scene); }
+void parse_moment(Importer &importer, Object &object, SceneDescription &scene) {
+    scene.wants_variance = true;
+    parse_inner(importer, object, scene);
+}
 
 void parse_aov(Importer &importer, Object &object, SceneDescription &scene) {
     const std::string channels = object.string("aovs").value_or("");

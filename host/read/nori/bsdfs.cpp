@@ -1,5 +1,6 @@
 // The parser of BSDFs: their parameters are those of cl/bsdfs/NAME.h, by their names in the XML.
 #include "read/nori/parsers.h"
+#include "scene/index_of_refraction.h"
 
 #include <fmt/format.h>
 
@@ -15,15 +16,25 @@ uint checked_word(const Properties &properties, const Parameter &parameter, doub
     return std::bit_cast<uint>(static_cast<float>(value));
 }
 
+// A number; of an index of refraction the name of the medium, too.
+std::optional<double> number_or_medium(Properties &properties, const Parameter &parameter) {
+    if (parameter.name.ends_with("_ior"))
+        if (const auto name = properties.string_if(parameter.xml_name)) {
+            const auto index = index_of_refraction(*name);
+            if (!index)
+                properties.mistake_at(parameter.xml_name, unknown_name("medium", *name, names_of(media())));
+            return index;
+        }
+    return properties.number(parameter.xml_name);
+}
+
 struct BsdfType {
     std::string name;
     std::vector<uint> words; // its record with all defaults
-    unsigned refused;        // traits that its children must not have
 };
 
-#define OPAL_BSDF_TYPE(name, traits) {#name, words_of(bsdf_##name##_record{}), 0},
-#define OPAL_NESTING_TYPE(name, refused) {#name, words_of(bsdf_##name##_record{}), refused},
-const std::vector<BsdfType> bsdf_types = {OPAL_BSDFS(OPAL_BSDF_TYPE) OPAL_NESTING_BSDFS(OPAL_NESTING_TYPE)};
+#define OPAL_BSDF_TYPE(name, traits) {#name, words_of(bsdf_##name##_record{})},
+const std::vector<BsdfType> bsdf_types = {OPAL_ALL_BSDFS(OPAL_BSDF_TYPE)};
 
 // Sets the words of a parameter that the object has. A BSDF is no property: add_children reads it.
 void read_parameter(Properties &properties, const Parameter &parameter, std::span<uint> words) {
@@ -38,7 +49,7 @@ void read_parameter(Properties &properties, const Parameter &parameter, std::spa
                 words[parameter.word + i] = checked_word(properties, parameter, (*color)[i]);
         break;
     case ParameterType::NUMBER:
-        if (const auto number = properties.number(parameter.xml_name))
+        if (const auto number = number_or_medium(properties, parameter))
             words[parameter.word] = checked_word(properties, parameter, *number);
         break;
     case ParameterType::FLAG:
@@ -59,14 +70,13 @@ void add_children(Properties &properties, const BsdfType &type, Bsdf &bsdf) {
     for (const XmlNode &node : nodes)
         properties.context().attempt(node, [&] {
             const Bsdf &child = bsdf.children.emplace_back(parse_bsdf(node, properties.context()));
-            if (child.traits() & type.refused & OPAL_TRANSMITS)
+            if (bsdf_traits(bsdf.kind()) & OPAL_HOLDS_OPAQUE && child.traits() & OPAL_TRANSMITS)
                 node.fail(fmt::format("a {} cannot hold a BSDF that light passes through", type.name));
         });
-    const bool same_back = bsdf.kind() == BSDF_twosided && nodes.size() == 1;
-    if (same_back && !bsdf.children.empty())
-        bsdf.children.push_back(bsdf.children.front());
-    if (std::ssize(nodes) != wanted && !same_back)
-        properties.mistake(fmt::format("a {} has {} <bsdf> within it, not {}", type.name, wanted, nodes.size()));
+    const bool is_both_sides = bsdf.kind() == BSDF_twosided && nodes.size() == 1;
+    if (std::ssize(nodes) != wanted && !is_both_sides)
+        properties.mistake(fmt::format("a {} has {} <bsdf> within it, not {}", type.name,
+                                       bsdf.kind() == BSDF_twosided ? "1 or 2" : std::to_string(wanted), nodes.size()));
 }
 
 } // namespace

@@ -25,6 +25,13 @@ void parse_mitchell(Properties &properties, Filter &filter) {
 
 void parse_lanczos(Properties &properties, Filter &filter) { filter.radius = properties.number("radius").value_or(3); }
 
+// Catmull and Rom's spline: Mitchell's filter of B 0, C 0.5.
+void parse_catmullrom(Properties &properties, Filter &filter) {
+    filter.radius = properties.number("radius").value_or(2);
+    filter.b = 0;
+    filter.c = 0.5;
+}
+
 struct FilterType {
     std::string name;
     int kind;
@@ -32,7 +39,8 @@ struct FilterType {
 };
 
 #define OPAL_FILTER_TYPE(name) {#name, FILTER_##name, parse_##name},
-const std::vector<FilterType> filter_types = {OPAL_FILTERS(OPAL_FILTER_TYPE)};
+const std::vector<FilterType> filter_types = {
+    OPAL_FILTERS(OPAL_FILTER_TYPE){"catmullrom", FILTER_mitchell, parse_catmullrom}};
 
 struct CameraType {
     std::string name;

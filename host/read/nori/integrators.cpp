@@ -91,6 +91,8 @@ void parse_integrator(const XmlNode &node, const ParseContext &context, SceneDes
         if (parser.name == type->name)
             context.attempt(node, [&] { parser.parse(properties, scene); });
     parse_options(properties, scene.strategy);
+    if (integrator_of(scene.strategy).has(OPAL_ASKS_LIGHTS))
+        scene.hides_emitters = properties.boolean("hide_emitters").value_or(false);
     properties.finish();
 }
 

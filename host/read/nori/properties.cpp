@@ -140,6 +140,11 @@ std::optional<bool> Properties::boolean_if(const std::string &name) {
     return property && property->node.tag() != "boolean" ? std::nullopt : boolean(name);
 }
 
+std::optional<std::string> Properties::string_if(const std::string &name) {
+    const Property *property = look(name);
+    return property && property->node.tag() != "string" ? std::nullopt : string(name);
+}
+
 std::optional<std::string> Properties::text(const std::string &tag, const std::string &name) {
     const Property *written = look(name);
     bool taken = written && written->asked;

@@ -55,6 +55,7 @@ public:
     // As boolean(), but nothing if the property has another type: for names that the dialects use with different types.
     // text() gets the value then.
     std::optional<bool> boolean_if(const std::string &name);
+    std::optional<std::string> string_if(const std::string &name); // likewise, for numbers that may have a name
     // The value as written, of a property of that type; nothing if it is missing or was fetched by boolean_if.
     std::optional<std::string> text(const std::string &tag, const std::string &name);
 
