@@ -523,6 +523,7 @@ TEST_CASE_METHOD(MitsubaFixture, "what Opal cannot render is an error with its p
         {in_shape("<float name='radius' value='-1'/>"), ":3:1: property 'radius': must be above 0"},
         {in_shape("<float name='raduis' value='1'/>"),
          ":3:1: unknown property 'raduis' of shape 'sphere'; did you mean 'radius'?"},
+        {in_shape("<string name='filename' value='a.obj'/>"), ":3:1: unknown property 'filename' of shape 'sphere'"},
         {in_shape("<bsdf type='diffuse'/><bsdf type='diffuse'/>"), ":3:23: a second <bsdf> in the <shape>"},
         {in_shape("<emitter type='area'/><emitter type='area'/>"), ":3:23: a second <emitter> in the <shape>"},
         {in_shape("<emitter type='point'/>"), ":3:1: emitter 'point' must stand in a <scene>, not in a <shape>"},
@@ -537,9 +538,9 @@ TEST_CASE_METHOD(MitsubaFixture, "what Opal cannot render is an error with its p
         {in_bsdf("dielectric", "<rgb name='int_ior' value='1'/>"),
          ":3:1: property 'int_ior' is a <rgb> here, but must"},
         {in_bsdf("dielectric", "<float name='specular_reflectance' value='0.5'/>"),
-         ":3:1: property 'specular_reflectance': Opal has only 1 here"},
+         ":3:1: property 'specular_reflectance': Opal has only 1 here yet"},
         {in_bsdf("conductor", "<string name='material' value='Au'/>"),
-         ":3:1: property 'material': Opal has only 'none'"},
+         ":3:1: property 'material': Opal has only the conductor"},
         {in_bsdf("conductor", "<float name='eta' value='1'/>"), ":3:1: property 'eta': Opal has only the conductor"},
         {in_bsdf("twosided", "<bsdf type='dielectric'/>"), ":3:1: a twosided cannot hold a BSDF that light passes"},
         {in_bsdf("twosided", "<bsdf type='null'/>"), ":3:1: a twosided cannot hold a BSDF that light passes"},
@@ -559,6 +560,10 @@ TEST_CASE_METHOD(MitsubaFixture, "what Opal cannot render is an error with its p
         {in_light("spot", "<point name='position' value='1 2 3'/>"),
          ":3:1: unknown property 'position' of emitter 'spot'"},
         {in_light("spot", transform("<scale z='2'/>")), ":3:1: property 'to_world': a spot light must be scaled alike"},
+        {in_light("spot", "<texture name='texture' type='checkerboard'/>"),
+         ":3:1: property 'texture': Opal has no textured spot yet"},
+        {in_bsdf("conductor", "<float name='eta' value='1'/><float name='k' value='2'/>"),
+         ":3:1: property 'eta': Opal"},
         {in_light("spot", "<float name='cutoff_angle' value='0'/>"), ":3:1: property 'cutoff_angle': must be above 0"},
         {in_light("constant", "<rgb name='radiance' value='-1 0 0'/>"),
          ":3:1: property 'radiance': must not be negative"},
@@ -658,7 +663,7 @@ TEST_CASE_METHOD(MitsubaFixture, "lenient: what stands in for a plug-in is said"
                Catch::StartsWith(":2:1: unknown shape type 'disk'") && Catch::EndsWith("; the shape is left out"));
     CHECK_THAT(told[1], Catch::StartsWith(":2:42: unknown bsdf type 'plastic'") &&
                             Catch::EndsWith("; a diffuse one of reflectance 0.5 stands in for it"));
-    CHECK(told[2] == ":3:26: Opal has no texture as radiance of a constant; 0.4 0.4 0.4 stands in for it");
+    CHECK(told[2] == ":3:26: property 'radiance': Opal has no texture here yet; 0.4 0.4 0.4 stands in for it");
     CHECK_THAT(told[3],
                Catch::StartsWith(":4:41: unknown texture type 'volume'") && Catch::EndsWith("; 0.5 stands in for it"));
     CHECK(error_in("<emitter type='constant'><texture name='radiance' type='checkerboard'/></emitter>") ==
@@ -745,6 +750,15 @@ TEST_CASE_METHOD(MitsubaFixture, "textures of reflectance and opacity", "[mitsub
     CHECK(error(file + "<string name='filter_type' value='ewa'/>") ==
           ":3:40: property 'filter_type': unknown value 'ewa'; available: bilinear, nearest");
     CHECK_THAT(error("<string name='filename' value='b.png'/>"), Catch::StartsWith(":3:1: property 'filename': "));
+    const std::string no_image = "<string name='filename' value='a.obj'/>";
+    CHECK_THAT(error(no_image), Catch::StartsWith(":3:1: property 'filename': ") && Catch::Contains("is no image"));
+    const std::vector<std::string> told =
+        warnings_of("<emitter type='constant'/><shape type='cube'><bsdf type='diffuse'><texture name='reflectance' "
+                    "type='bitmap'>" +
+                        no_image + "</texture></bsdf></shape>",
+                    {.lenient = true});
+    REQUIRE(told.size() == 1);
+    CHECK_THAT(told[0], Catch::EndsWith("; 0.5 stands in for the texture"));
 }
 
 TEST_CASE_METHOD(MitsubaFixture, "without a sensor or an integrator there are defaults", "[mitsuba]") {

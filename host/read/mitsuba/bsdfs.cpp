@@ -14,8 +14,8 @@ constexpr Color white{1, 1, 1};
 
 // A property of which Opal has the value 1 alone.
 void require_white(Importer &importer, Object &object, const char *name) {
-    const Color color = importer.color(object, name, SpectrumUse::reflectance, white);
-    object.check(color == white, name, "Opal has only 1 here");
+    if (importer.color(object, name, SpectrumUse::reflectance, white) != white)
+        importer.lacks(object, name, "Opal has only 1 here yet", "1 stands in for it");
 }
 
 // Sets a parameter of the material to that property: a texture, or a constant, as luminance where it is one number. It
@@ -48,17 +48,14 @@ Bsdf parse_diffuse(Importer &importer, Object &object) {
 
 // An index of refraction: a number, or the name of a material.
 double parse_index(Object &object, const char *name, const std::string &otherwise) {
-    if (!object.has(name))
-        return *index_of_refraction(otherwise);
-    const std::optional<std::string> medium = object.string_if(name);
-    if (!medium) {
-        const double index = object.number(name).value_or(1);
-        object.check(index > 0, name, "must be above 0");
-        return index;
+    if (const std::optional<std::string> medium = object.string_if(name)) {
+        const std::optional<double> index = index_of_refraction(*medium);
+        object.check(index.has_value(), name, unknown_name("medium", *medium, names_of(media())));
+        return index.value_or(1);
     }
-    const std::optional<double> index = index_of_refraction(*medium);
-    object.check(index.has_value(), name, unknown_name("medium", *medium, names_of(media())));
-    return index.value_or(1);
+    const double index = object.number(name).value_or(*index_of_refraction(otherwise));
+    object.check(index > 0, name, "must be above 0");
+    return index;
 }
 
 Bsdf parse_dielectric(Importer &importer, Object &object) {
@@ -70,12 +67,13 @@ Bsdf parse_dielectric(Importer &importer, Object &object) {
 
 // Opal's mirror is the conductor that reflects everything.
 Bsdf parse_conductor(Importer &importer, Object &object) {
-    const std::string material = object.string("material").value_or("none");
-    object.check(material == "none", "material", "Opal has only 'none' yet, which reflects everything");
-    for (const char *name : {"eta", "k"}) {
-        object.check(!object.has(name), name, "Opal has only the conductor that reflects everything yet");
+    const bool has_material = object.string("material").value_or("none") != "none";
+    const char *const other = has_material ? "material" : object.has("eta") ? "eta" : object.has("k") ? "k" : nullptr;
+    if (other)
+        importer.lacks(object, other, "Opal has only the conductor that reflects everything yet, material none",
+                       "that one stands in for it");
+    for (const char *name : {"eta", "k"})
         object.ignore(name);
-    }
     require_white(importer, object, "specular_reflectance");
     return bsdf_mirror_record{};
 }

@@ -44,8 +44,8 @@ EmitterParameters parse_spot(Importer &importer, Object &object) {
     const double beam = object.number("beam_width").value_or(0.75 * cutoff);
     object.check(cutoff > 0 && cutoff <= 180, "cutoff_angle", "must be above 0 and at most 180 degrees");
     object.check(beam >= 0 && beam <= 180, "beam_width", "must be from 0 to 180 degrees");
-    if (const auto texture = object.has("texture") ? object.child_named("texture") : nullptr)
-        importer.refuse(*texture, "the light is the same in its whole beam");
+    if (object.has("texture"))
+        importer.lacks(object, "texture", "Opal has no textured spot yet", "its whole beam has one colour");
     return emitter_spot{.position = to_world.point({}),
                         .direction = to_world.vector({0, 0, 1}),
                         .intensity = intensity,

@@ -57,6 +57,15 @@ void Importer::finish() {
     }
 }
 
+void Importer::lacks(Object &object, const std::string &name, const std::string &message,
+                     const std::string &instead) const {
+    object.ignore(name);
+    if (context_.lenient)
+        warn(fmt::format("{}: property '{}': {}; {}", object.place_of(name).text(), name, message, instead));
+    else
+        object.mistake_at(name, message);
+}
+
 const Bsdf &Importer::bsdf(Object &object) {
     const auto known = bsdfs_.find(&object);
     if (known != bsdfs_.end())
@@ -96,11 +105,8 @@ Color Importer::color(Object &object, const std::string &name, SpectrumUse use, 
         if (const auto *squares = std::get_if<CheckerboardTexture>(&*read))
             for (size_t i = 0; i < mean.size(); i++)
                 mean[i] = (squares->color0[i] + squares->color1[i]) / 2;
-    if (context_.lenient)
-        warn(fmt::format("{}: Opal has no texture as {} of a {}; {:.4g} {:.4g} {:.4g} stands in for it",
-                         object.place_of(name).text(), name, object.type(), mean[0], mean[1], mean[2]));
-    else
-        object.mistake_at(name, "Opal has no texture here yet");
+    lacks(object, name, "Opal has no texture here yet",
+          fmt::format("{:.4g} {:.4g} {:.4g} stands in for it", mean[0], mean[1], mean[2]));
     return mean;
 }
 

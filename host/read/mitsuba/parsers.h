@@ -37,6 +37,10 @@ public:
     // An object of a kind that Opal does not have at all, as <medium>: likewise.
     void refuse(Object &object, const std::string &instead) { count_unknown(object, {}, instead); }
 
+    // What a property asks and Opal does not have: a mistake at it, or if lenient a warning that says what is done
+    // instead.
+    void lacks(Object &object, const std::string &name, const std::string &message, const std::string &instead) const;
+
     // The material of a <bsdf>, which is read once however many objects refer to it.
     const Bsdf &bsdf(Object &object);
 

@@ -121,8 +121,10 @@ void parse_shape(Importer &importer, Object &object, SceneDescription &scene) {
     Mesh mesh;
     mesh.place = object.place();
     mesh.name = object.id();
-    if (mesh.name.empty())
-        mesh.name = object.string("filename").value_or(object.type());
+    if (mesh.name.empty()) {
+        const bool is_file = type->parse == parse_obj || type->parse == parse_ply;
+        mesh.name = (is_file ? object.string("filename") : std::nullopt).value_or(object.type());
+    }
     const Transform to_world = object.transform("to_world").value_or(Transform());
     const bool flip_normals = object.boolean("flip_normals").value_or(false);
     object.ignore("silhouette_sampling_weight"); // of differentiable rendering

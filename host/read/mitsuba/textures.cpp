@@ -45,7 +45,12 @@ Texture parse_bitmap(Importer &importer, Object &object) {
         object.mistake("the texture lacks its filename: <string name=\"filename\" value=\"a.png\"/>");
     if (!file)
         throw NoObject{};
-    texture.picture = importer.picture(*file);
+    try {
+        texture.picture = importer.picture(*file);
+    } catch (const Error &error) {
+        importer.lacks(object, "filename", error.what(), "0.5 stands in for the texture");
+        throw NoObject{};
+    }
     return texture;
 }
 
