@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the scenes of scenes/ and their meshes. Plain Python 3, no dependencies, the same bytes every time.
 
-  scripts/make_scenes.py                         write scenes/*.xml and scenes/meshes/*.obj
+  scripts/make_scenes.py                         write scenes/*.xml and the meshes in scenes/meshes
   scripts/make_scenes.py --check                 compare them with what is there; exit 1 where they differ
   scripts/make_scenes.py --displaced-sphere N    write scenes/generated/displaced_sphere_N.xml and its mesh of about N triangles
 """
@@ -9,7 +9,7 @@ import argparse
 import pathlib
 import sys
 
-from scenekit import cornell_box, displaced_sphere, eta_study, lights, materials, write
+from scenekit import cornell_box, displaced_sphere, eta_study, lights, materials, mitsuba, write
 
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 
@@ -22,6 +22,8 @@ def all_files():
             files[SCENES / "meshes" / f"{name}.obj"] = write.obj_text(surface, comment)
         for scene in module.scenes():
             files[SCENES / f"{scene.name}.xml"] = scene.text()
+    for name, text in mitsuba.files().items():
+        files[SCENES / name] = text
     return files
 
 

@@ -127,6 +127,9 @@ void print_scene(const SceneDescription &scene, const FlatScene &flat) {
     row("dialect", "{}", name_of(scene.dialect));
     for (const auto &[name, value] : scene.definitions)
         row("defined", "{} = {}", name, value);
+    for (const PluginUse &use : scene.plugins)
+        row(&use == &scene.plugins.front() ? "plug-ins" : "", "{} {} '{}': {}", use.count, use.tag, use.type,
+            use.becomes);
     row("camera", "{} x {} pixels, {}, near {:g}, far {:g}", camera.width, camera.height, camera_text(camera),
         camera.near_clip, camera.far_clip);
     row("filter", "{}{}", filter_text(camera.filter), camera.filter.given ? "" : " (the dialect's default)");
@@ -234,11 +237,15 @@ nlohmann::json json_of(const SceneDescription &scene, const FlatScene &flat, int
                                   {"hides_emitters", scene.hides_emitters},
                                   {"lanes", lanes},
                                   {"strategy", strategy_json(scene)},
+                                  {"plugins", nlohmann::json::array()},
                                   {"lights", nlohmann::json::array()},
                                   {"meshes", nlohmann::json::array()},
                                   {"buffers", nlohmann::json::object()},
                                   {"features", nlohmann::json::array()},
                                   {"notes", scene_notes(scene, false)}});
+    for (const PluginUse &use : scene.plugins)
+        json["plugins"].push_back(
+            object({{"tag", use.tag}, {"type", use.type}, {"becomes", use.becomes}, {"count", use.count}}));
     for (const Light &light : scene.lights)
         json["lights"].push_back(
             object({{"type", emitter_name(light.kind())}, {"parameters", parameters_text(light)}}));

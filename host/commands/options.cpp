@@ -47,7 +47,7 @@ OptionRow override_row(SceneOptions &options, const std::string &name, const std
 std::vector<OptionRow> scene_rows(SceneOptions &options) {
     return append({{.flags = "SCENE.xml",
                     .target = &options.file,
-                    .help = "The scene, in Nori's format",
+                    .help = "The scene, in the format of Nori or of Mitsuba",
                     .type = "",
                     .required = true}},
                   strategy_rows(options));
@@ -65,11 +65,15 @@ std::vector<OptionRow> strategy_rows(SceneOptions &options) {
     rows.push_back({.flags = "--dialect",
                     .target = &options.load.dialect,
                     .help =
-                        "The version of Nori that the scene is for: upstream (Nori), course (2022: box filter), eth "
-                        "(ETH's course, Nori of 2012: the camera's +x points to the right of the image), or auto: "
-                        "by its names",
+                        "What the scene is written for: upstream (Nori), course (Nori's of 2022: box filter), eth "
+                        "(ETH's course, Nori of 2012: the camera's +x points to the right of the image), mitsuba, or "
+                        "auto: by its version and its names",
                     .check = OneOf<std::string>{dialect_choices()},
                     .type = "NAME"});
+    rows.push_back({.flags = "--sensor",
+                    .target = &options.load.sensor,
+                    .help = "The camera of a Mitsuba scene that has several: its id, or its number from 0 [0]",
+                    .type = "N|ID"});
     rows.push_back({.flags = "-D,--define",
                     .target = &options.load.definitions,
                     .help = "The value for $NAME in the scene's attributes; without it, that of <default name=\"NAME\" "
@@ -161,6 +165,14 @@ void set_size(Camera &camera, unsigned width, unsigned height) {
     if (width || height) {
         camera.width = width ? int(width) : keep_aspect(height, old.height, old.width);
         camera.height = height ? int(height) : keep_aspect(width, old.width, old.height);
+    }
+    if (const Crop crop = old.crop; crop != Crop{}) { // the film's: the same part of the view, to whole pixels
+        const auto scaled = [](int at, int now, int before) { return int(std::lround(double(at) * now / before)); };
+        const int x = std::min(scaled(crop.x, camera.width, old.width), camera.width - 1);
+        const int y = std::min(scaled(crop.y, camera.height, old.height), camera.height - 1);
+        const int right = scaled(crop.x + crop.width, camera.width, old.width);
+        const int bottom = scaled(crop.y + crop.height, camera.height, old.height);
+        camera.crop = {x, y, std::max(right - x, 1), std::max(bottom - y, 1), camera.width, camera.height};
     }
 }
 

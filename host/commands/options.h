@@ -4,7 +4,7 @@
 #include "commands/command.h"
 #include "device/context.h"
 #include "device/sources.h"
-#include "read/nori/load.h"
+#include "read/load.h"
 
 namespace opal {
 
@@ -15,7 +15,7 @@ struct SceneOptions {
     std::string cl_dir; // empty: the embedded kernels
 };
 
-// --integrator, a flag for each strategy option, --lenient, --dialect, -D, --cl-dir.
+// --integrator, a flag for each strategy option, --lenient, --dialect, --sensor, -D, --cl-dir.
 std::vector<OptionRow> strategy_rows(SceneOptions &options);
 // SCENE.xml, then strategy_rows.
 std::vector<OptionRow> scene_rows(SceneOptions &options);

@@ -370,7 +370,9 @@ std::vector<std::string> scene_warnings(const SceneDescription &scene, size_t mo
 std::vector<std::string> scene_notes(const SceneDescription &scene, bool samples_given) {
     std::vector<std::string> lines;
     if (!samples_given && !scene.sample_count_given)
-        lines.push_back(fmt::format("{}: no sampleCount: 1 sample a pixel", scene.sampler_place.text()));
+        lines.push_back(fmt::format("{}: no {}: {} a pixel", scene.sampler_place.text(),
+                                    scene.dialect == Dialect::mitsuba ? "sample_count" : "sampleCount",
+                                    plural(scene.spp, "sample", "samples")));
     size_t bare = 0;
     const Mesh *first = nullptr;
     for (const Mesh &mesh : scene.meshes)

@@ -68,11 +68,11 @@ bool ParseContext::require_attributes(const XmlNode &node, std::initializer_list
     return node.require_attributes(names, handler(), take_unknown, optional);
 }
 
-void ParseContext::gather(const XmlNode &node, const Error &error) const {
+void ParseContext::gather(const SourcePlace &place, const Error &error) const {
     if (!mistakes)
         throw; // the exception that attempt() handles
     const auto *placed = dynamic_cast<const XmlError *>(&error);
-    mistakes->add(placed ? placed->place() : node.place(), error.what());
+    mistakes->add(placed ? placed->place() : place, error.what());
 }
 
 } // namespace opal

@@ -54,18 +54,18 @@ struct ParseContext {
     bool require_attributes(const XmlNode &node, std::initializer_list<const char *> names,
                             std::initializer_list<const char *> optional = {}) const;
 
-    // Runs `make`, which may read the object at `node`. An Error is gathered with the others, so that parsing goes on.
-    template <class Make> void attempt(const XmlNode &node, Make make) const {
+    // Runs `make`, which may read the object. An Error is gathered with the others, so that parsing goes on.
+    template <class Object, class Make> void attempt(const Object &object, Make make) const {
         try {
             make();
         } catch (const NoObject &) {
         } catch (const Error &error) {
-            gather(node, error);
+            gather(object.place(), error);
         }
     }
 
 private:
-    void gather(const XmlNode &node, const Error &error) const; // throws it if mistakes are not gathered
+    void gather(const SourcePlace &place, const Error &error) const; // throws it if mistakes are not gathered
 };
 
 // Runs `parse` and adds the place of this node to its Error.

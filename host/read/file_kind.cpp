@@ -21,7 +21,8 @@ using namespace std::literals;
 const std::string by_assimp = "convert it: assimp export FILE NEW.obj (Debian: assimp-utils), or import it into "
                               "Blender and export Wavefront (.obj)";
 const std::string by_blender = "open it in Blender and export Wavefront (.obj)";
-const std::string no_text_format = "Opal reads Nori's scenes (.xml) and Wavefront and PLY meshes (.obj, .ply)";
+const std::string no_text_format =
+    "Opal reads scenes of Nori and Mitsuba (.xml), and Wavefront and PLY meshes (.obj, .ply)";
 const std::string by_scene_for = "opal scene-for FILE > NEW.xml writes a scene around it";
 
 // Kinds that begin with bytes of their own.
@@ -166,8 +167,7 @@ FileKindRow kind_of_xml(std::string_view text) {
     const std::string_view root_tag = root.substr(0, root.find('>'));
     if (tag == "scene" ? is_mitsuba(root)
                        : std::ranges::find(mitsuba_roots, tag) != std::end(mitsuba_roots) && has_long_version(root_tag))
-        return {FileKind::mitsuba_scene, "a scene of Mitsuba",
-                "there is no converter: Opal reads Nori's scenes, scenes/ has some to start from"};
+        return {FileKind::mitsuba_scene, "a scene of Mitsuba", "render it: opal FILE"};
     if (tag == "scene" || tag == "test")
         return {FileKind::scene, "a scene", "render it: opal FILE"};
     if (tag == "COLLADA")
@@ -271,8 +271,9 @@ std::string wrong_kind_text(const std::filesystem::path &file, const FileKindRow
         advice = "its type in a scene is ply";
     else if (wanted == FileKind::ply && found.kind == FileKind::obj)
         advice = "its type in a scene is obj";
-    return fmt::format("{}: is {}, not {}{}{}", file.string(), found.name, name_of(wanted), advice.empty() ? "" : "; ",
-                       advice);
+    const bool is_other_scene = wanted == FileKind::scene && found.kind == FileKind::mitsuba_scene;
+    return fmt::format("{}: is {}, not {}{}{}", file.string(), found.name,
+                       is_other_scene ? "one of Nori" : name_of(wanted), advice.empty() ? "" : "; ", advice);
 }
 
 std::string read_text_file(const std::filesystem::path &file, FileKind wanted, FileHashes *hashes) {

@@ -13,7 +13,7 @@ std::string SourcePlace::text() const {
 }
 
 std::span<const DialectRow> dialects() {
-    static const DialectRow table[] = {{"upstream"}, {"course"}, {"eth"}};
+    static const DialectRow table[] = {{"upstream"}, {"course"}, {"eth"}, {"mitsuba"}};
     return table;
 }
 

@@ -22,9 +22,10 @@
 
 namespace opal {
 
-// The forks of Nori whose scenes Opal reads. They differ in the default filter (the 2022 course has a box, the others a
-// Gaussian) and in the camera: its +x points to the image's left, with ETH's course and the Nori of 2012 to the right.
-enum class Dialect { upstream, course, eth };
+// What a scene's file is written for: a fork of Nori, or Mitsuba. The forks differ in the default filter (the 2022
+// course has a box, the others a Gaussian) and in the camera: its +x points to the image's left, with ETH's course and
+// the Nori of 2012 to the right.
+enum class Dialect { upstream, course, eth, mitsuba };
 struct DialectRow {
     std::string name;
 };
@@ -39,8 +40,8 @@ const char *camera_name(unsigned kind); // kind: CAMERA_*
 // A material: the record of its kind, ready for the device but for the places of the BSDFs that it leads to. By default
 // a grey diffuse one.
 struct Bsdf {
-    std::vector<uint> words;    // of a bsdf_NAME_record
-    std::vector<Bsdf> children; // of its parameters of type BSDF, in their order; one stands for both of twosided
+    std::vector<uint> words;            // of a bsdf_NAME_record
+    std::vector<Bsdf> children;         // of its parameters of type BSDF, in order; one stands for both of twosided
     std::map<size_t, Texture> textures; // what multiplies parameters, by Parameter::texture_word
     SourcePlace place;
 
@@ -93,6 +94,13 @@ struct Camera {
 };
 std::string camera_text(const Camera &camera); // its kind and parameters: "perspective, fov 30"
 
+// A plug-in that a file of Mitsuba uses.
+struct PluginUse {
+    std::string tag, type; // "bsdf", "diffuse"
+    std::string becomes;   // what Opal makes of it
+    size_t count = 0;      // of the objects
+};
+
 struct SimpleLight { // the one light of integrator `simple`
     Vec3 position;
     Color energy{};
@@ -116,8 +124,9 @@ struct SceneDescription {
     double visibility_length = 1; // integrator av: how far it looks
     unsigned spp = 1;
     bool sample_count_given = false;
-    SourcePlace place;         // of the <scene>
-    SourcePlace sampler_place; // of the <sampler>, else of the <scene>
+    SourcePlace place;              // of the <scene>
+    SourcePlace sampler_place;      // of the <sampler>, else of the <scene>
+    std::vector<PluginUse> plugins; // of a file of Mitsuba, in the order of their first use
 };
 
 bool has_light(const SceneDescription &scene);   // an emitter of any kind

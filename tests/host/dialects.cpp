@@ -69,7 +69,7 @@ TEST_CASE_METHOD(DialectFixture, "every name that tells a dialect loads and tell
     CHECK(load(camera + light).dialect == Dialect::upstream);
     CHECK(load(camera + light + integrator("path_mats")).dialect == Dialect::upstream);
     CHECK(error_of([&] { load(camera + light, {.dialect = "ehz"}); }) ==
-          "unknown dialect 'ehz'; available: upstream, course, eth");
+          "unknown dialect 'ehz'; available: upstream, course, eth, mitsuba");
 }
 
 TEST_CASE_METHOD(DialectFixture, "another material's reflectance tells no dialect", "[dialects]") {
@@ -303,5 +303,5 @@ TEST_CASE_METHOD(DialectFixture, "opal says what it takes from names, and what m
                                                  "means nothing here\n"));
     CHECK_THAT(as_it_is.out, Catch::Contains("dialect     eth\n"));
     CHECK_THAT(test::run_shell(opal + " --dialect upstream").out, Catch::Contains("dialect     upstream\n"));
-    CHECK_THAT(test::run_shell(opal + " --dialect nori").err, Catch::Contains("upstream, course, eth, auto"));
+    CHECK_THAT(test::run_shell(opal + " --dialect nori").err, Catch::Contains("upstream, course, eth, mitsuba, auto"));
 }

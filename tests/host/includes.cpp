@@ -49,6 +49,7 @@ const std::vector<Room> rooms = {
     {"read", {"base", "cl", "image", "scene"}},
     {"read/nori", {"base", "cl", "scene", "read"}},
     {"read/mitsuba", {"base", "cl", "scene", "read"}},
+    {"read/formats", {"base", "scene", "read", "read/nori", "read/mitsuba"}},
     {"strategies", {"base", "cl", "scene"}},
     {"bvh", {"base", "cl"}},
     {"flatten", {"base", "cl", "scene", "bvh"}},

@@ -5,7 +5,7 @@
 #include "cameras/list.h"
 #include "commands/commands.h"
 #include "flatten/scene_warnings.h"
-#include "read/nori/load.h"
+#include "read/load.h"
 #include "read/nori/tests.h"
 #include "scene/options.h"
 #include "support/error_of.h"
@@ -116,11 +116,27 @@ const std::vector<Kind> kinds = {
 Kind placed(const Kind &kind, const std::string &type) {
     Kind other = kind;
     if (kind.tag == "emitter" && (type == "area" || type == "parallelogram_emitter")) {
-        other.before += "<mesh type='obj'>";
-        other.after = "</mesh>" + other.after;
+        const bool is_nori = kind.before == "<scene>" + camera;
+        other.before += is_nori ? "<mesh type='obj'>" : "<shape type='sphere'>";
+        other.after = (is_nori ? "</mesh>" : "</shape>") + other.after;
     }
     return other;
 }
+
+// The same of Mitsuba's plug-ins; those of emitters but `area` stand in the scene.
+const std::string mitsuba_scene = "<scene version='3.0.0'>", in_sensor = "<sensor type='perspective'>",
+                  in_film = in_sensor + "<film type='hdrfilm'>";
+const std::vector<Kind> mitsuba_kinds = {
+    {"", "shape", mitsuba_scene, "</scene>", "shape"},
+    {"", "texture", mitsuba_scene, "</scene>", "texture"},
+    {"", "bsdf", mitsuba_scene, "</scene>", "bsdf"},
+    {"", "emitter", mitsuba_scene, "</scene>", "emitter"},
+    {"", "sensor", mitsuba_scene, "</scene>", "sensor"},
+    {"", "film", mitsuba_scene + in_sensor, "</sensor></scene>", "film"},
+    {"", "rfilter", mitsuba_scene + in_film, "</film></sensor></scene>", "rfilter"},
+    {"", "sampler", mitsuba_scene + in_sensor, "</sensor></scene>", "sampler"},
+    {"", "integrator", mitsuba_scene, "</scene>", "integrator"},
+};
 
 // Whether a row is about that type; those of all types, and those of the strategy, which begin with a property, are.
 bool is_about(const Cells &row, const std::string &type, const Names &types) {
@@ -179,6 +195,31 @@ TEST_CASE("the manual names every type and property that Opal reads, and no othe
                         INFO(name);
                         CHECK(contains(known, name));
                     }
+        }
+    }
+}
+
+TEST_CASE("the manual names every plug-in and property of Mitsuba's that Opal reads, and no other", "[manual]") {
+    const std::vector<Cells> rows = rows_below("Plug-ins and properties");
+    for (const Kind &kind : mitsuba_kinds) {
+        const Names types = kind.types();
+        for (const std::string &type : types) {
+            INFO(kind.tag << " " << type);
+            Names known = placed(kind, type).properties(type), written;
+            std::erase(known, "none"); // no property at all
+            bool is_there = false;
+            for (const Cells &row : rows) {
+                const Names about = quoted_names(row[1]);
+                if (!contains(quoted_names(row[0]), kind.tag) || (!contains(about, type) && row[1] != " all "))
+                    continue;
+                is_there = is_there || contains(about, type);
+                const Names names = quoted_names(row[2]);
+                written.insert(written.end(), names.begin(), names.end());
+            }
+            CHECK(is_there);
+            std::ranges::sort(known);
+            std::ranges::sort(written);
+            CHECK(known == written);
         }
     }
 }

@@ -74,8 +74,7 @@ TEST_CASE("Every scene of ours loads, holds a light, and has vn on the side of i
     for (const auto &file : scene_files()) {
         INFO(file);
         SceneDescription scene = load_scene(file);
-        CHECK(std::any_of(scene.meshes.begin(), scene.meshes.end(),
-                          [](const Mesh &m) { return m.radiance.has_value(); }));
+        CHECK(has_light(scene));
         double side = file.stem() == "furnace" ? -1 : 1; // the furnace is wound outwards and its vn point inwards
         for (const Mesh &mesh : scene.meshes) {
             const auto *triangles = std::get_if<TriangleMesh>(&mesh.shape);

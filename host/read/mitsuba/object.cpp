@@ -86,6 +86,12 @@ template <class T> std::optional<T> Object::find(const std::string &name, std::i
 std::optional<bool> Object::boolean(const std::string &name) { return find<bool>(name, {"boolean"}); }
 std::optional<int> Object::integer(const std::string &name) { return find<int>(name, {"integer"}); }
 std::optional<std::string> Object::string(const std::string &name) { return find<std::string>(name, {"string"}); }
+
+std::optional<std::string> Object::string_if(const std::string &name) {
+    const Property *property = look(name);
+    return property && property->node.tag() == "string" ? string(name) : std::nullopt;
+}
+
 std::optional<Vec3> Object::point(const std::string &name) { return find<Vec3>(name, {"point", "vector"}); }
 std::optional<Vec3> Object::vector(const std::string &name) { return find<Vec3>(name, {"vector", "point"}); }
 

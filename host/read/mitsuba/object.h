@@ -38,8 +38,9 @@ public:
     std::optional<int> integer(const std::string &name);
     std::optional<double> number(const std::string &name); // <float> or <integer>
     std::optional<std::string> string(const std::string &name);
-    std::optional<Vec3> point(const std::string &name);  // <point> or <vector>
-    std::optional<Vec3> vector(const std::string &name); // likewise
+    std::optional<std::string> string_if(const std::string &name); // nothing, and no mistake, if it has another type
+    std::optional<Vec3> point(const std::string &name);            // <point> or <vector>
+    std::optional<Vec3> vector(const std::string &name);           // likewise
     std::optional<Transform> transform(const std::string &name);
     // The colour of an <rgb>, a <spectrum> or, as grey, a number. A <texture> there is none: it stays a child. It is a
     // mistake if an <rgb> is no reflectance, 0 to 1. What a curve has outside of what can be is clamped, and warned of.

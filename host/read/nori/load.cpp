@@ -104,7 +104,7 @@ SceneDescription parse_scene(const XmlNode &node, const ParseContext &context) {
     return scene;
 }
 
-SceneDescription load_scene(const std::filesystem::path &file, const LoadOptions &options) {
+SceneDescription load_nori_scene(const std::filesystem::path &file, const LoadOptions &options) {
     FileHashes hashes;
     XmlDocument document(file, &hashes);
     XmlNode root = document.root();

@@ -81,6 +81,8 @@ TestDescription parse_test(const XmlNode &node, const ParseContext &context) {
 } // namespace
 
 TestDescription load_test(const std::filesystem::path &file, const LoadOptions &options) {
+    if (options.dialect == name_of(Dialect::mitsuba))
+        throw UsageError(file.string() + ": a <test> is Nori's: --dialect mitsuba is for scenes");
     XmlDocument document(file);
     XmlNode root = document.root();
     if (root.tag() == "scene")

@@ -1,0 +1,113 @@
+// Parsers of emitters. Area lights are children of a shape, others of the scene.
+#include "base/log.h"
+#include "read/mitsuba/parsers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+namespace opal::mitsuba {
+
+namespace {
+
+constexpr double full_sphere = 4 * std::numbers::pi; // solid angle of all directions
+
+// What is emitted: a radiance, an intensity or an irradiance.
+Color parse_emission(Importer &importer, Object &object, const char *name) {
+    const Color color = importer.color(object, name, SpectrumUse::radiance, {1, 1, 1});
+    object.check(*std::ranges::min_element(color) >= 0, name, "must not be negative");
+    return color;
+}
+
+// Either a property of its own or to_world says it; Mitsuba refuses both together.
+void refuse_both(Object &object, const char *name) {
+    if (object.has(name) && object.has("to_world"))
+        object.mistake_at(name, "stands beside to_world, which says it, too: give one of both");
+}
+
+EmitterParameters parse_point(Importer &importer, Object &object) {
+    refuse_both(object, "position");
+    const Transform to_world = object.transform("to_world").value_or(Transform());
+    Color power = parse_emission(importer, object, "intensity");
+    for (double &channel : power)
+        channel *= full_sphere;
+    return emitter_point{.position = object.point("position").value_or(to_world.point({})), .power = power};
+}
+
+EmitterParameters parse_spot(Importer &importer, Object &object) {
+    const Transform to_world = object.transform("to_world").value_or(Transform());
+    object.check(keeps_angles(to_world), "to_world",
+                 "a spot light must be scaled alike along all axes: its cone would not be round");
+    const Color intensity = parse_emission(importer, object, "intensity");
+    const double cutoff = object.number("cutoff_angle").value_or(20);
+    const double beam = object.number("beam_width").value_or(0.75 * cutoff);
+    object.check(cutoff > 0 && cutoff <= 180, "cutoff_angle", "must be above 0 and at most 180 degrees");
+    object.check(beam >= 0 && beam <= 180, "beam_width", "must be from 0 to 180 degrees");
+    if (object.has("texture"))
+        importer.lacks(object, "texture", "Opal has no textured spot yet", "its whole beam has one colour");
+    return emitter_spot{.position = to_world.point({}),
+                        .direction = to_world.vector({0, 0, 1}),
+                        .intensity = intensity,
+                        .cutoff_angle = cutoff,
+                        .beam_width = beam};
+}
+
+EmitterParameters parse_directional(Importer &importer, Object &object) {
+    refuse_both(object, "direction");
+    const Transform to_world = object.transform("to_world").value_or(Transform());
+    const Vec3 direction = object.vector("direction").value_or(to_world.vector({0, 0, 1}));
+    object.check(length(direction) > 0, "direction", "must not be 0 0 0");
+    if (!keeps_lengths(to_world))
+        warn(fmt::format("{}: to_world scales this light; Mitsuba lights surfaces that many times more, Opal takes the "
+                         "direction alone: the irradiance stays as it is written",
+                         object.place_of("to_world").text()));
+    return emitter_directional{.direction = direction, .irradiance = parse_emission(importer, object, "irradiance")};
+}
+
+EmitterParameters parse_constant(Importer &importer, Object &object) {
+    object.ignore("to_world"); // it is the same from everywhere
+    return emitter_constant{.radiance = parse_emission(importer, object, "radiance")};
+}
+
+const char *const area = "area";
+
+// area: without a parser, a child of a shape.
+const std::vector<Plugin<EmitterParameters (*)(Importer &, Object &)>> emitter_types = {
+    {area, "area light", nullptr},
+    {"point", "point", parse_point},
+    {"spot", "spot", parse_spot},
+    {"directional", "directional", parse_directional},
+    {"constant", "constant", parse_constant},
+};
+
+// Of a type that Opal has, in the place where it stands. Else throws NoObject.
+const auto &type_in(Importer &importer, Object &object, const char *parent) {
+    const auto *type = importer.row_of_type(object, emitter_types, "it is left out");
+    if (!type)
+        throw NoObject{};
+    const std::string wanted = type->parse ? "scene" : "shape";
+    if (wanted != parent) {
+        object.mistake(fmt::format("emitter '{}' must stand in a <{}>, not in a <{}>", type->name, wanted, parent));
+        throw NoObject{};
+    }
+    object.ignore("sampling_weight"); // how often it is drawn: --emitter-choice says that
+    return *type;
+}
+
+} // namespace
+
+void parse_area_emitter(Importer &importer, Object &object, Mesh &mesh) {
+    type_in(importer, object, "shape");
+    mesh.radiance = parse_emission(importer, object, "radiance");
+    object.finish();
+}
+
+Light parse_scene_emitter(Importer &importer, Object &object) {
+    const auto &type = type_in(importer, object, "scene");
+    Light light{type.parse(importer, object), object.place()};
+    object.finish();
+    return light;
+}
+
+} // namespace opal::mitsuba

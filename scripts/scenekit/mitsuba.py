@@ -1,0 +1,267 @@
+"""Scenes in the format of Mitsuba 3, and their PLY mesh."""
+import math
+
+from scenekit.shapes import polygons
+from scenekit.vec import add, cross, dot, norm, scale, sub
+from scenekit.write import LICENCE, number
+
+
+def stellated_dodecahedron():
+    """The small stellated dodecahedron, tips on the unit sphere: a pyramid on each pentagon, whose sides go on in the planes of
+    the pentagons around it. Its height is the golden ratio times the radius of the corners around the pentagon's middle."""
+    g = (1 + math.sqrt(5)) / 2
+    corners = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    for a in (-1, 1):
+        for b in (-1, 1):
+            corners += [(0, a / g, b * g), (a / g, b * g, 0), (b * g, 0, a / g)]
+    tips = [norm(p) for a in (-1, 1) for b in (-1, 1) for p in [(0, a * g, b), (a * g, b, 0), (b, 0, a * g)]]
+    triangles = []
+    for tip in tips:
+        side = sorted(corners, key=lambda p: -dot(p, tip))[:5]
+        middle = scale(tip, dot(side[0], tip))
+        u = norm(sub(side[0], middle))
+        v = cross(tip, u)
+        side.sort(key=lambda p: math.atan2(dot(sub(p, middle), v), dot(sub(p, middle), u)))
+        height = g * math.dist(side[0], middle)
+        top = add(middle, scale(tip, height))
+        size = math.sqrt(dot(top, top))
+        triangles += [[scale(p, 1 / size) for p in (side[k], side[(k + 1) % 5], top)] for k in range(5)]
+    return polygons([[tuple(round(x, 5) for x in p) for p in triangle] for triangle in triangles])
+
+
+def ply_text(surface, comment):
+    lines = ["ply", "format ascii 1.0", f"comment {comment}", f"comment {LICENCE}",
+             f"element vertex {len(surface.positions)}", "property float x", "property float y", "property float z",
+             f"element face {len(surface.faces)}", "property list uchar int vertex_indices", "end_header"]
+    lines += [" ".join(number(round(x, 5)) for x in p) for p in surface.positions]
+    lines += [" ".join(str(n) for n in [len(face), *(i for i, _ in face)]) for face in surface.faces]
+    return "\n".join(lines) + "\n"
+
+
+SHAPES = """
+    <integrator type="path">
+        <integer name="max_depth" value="16"/>
+    </integrator>
+
+    <sensor type="perspective">
+        <float name="fov" value="38"/>
+        <transform name="to_world">
+            <lookat origin="0.6, 3, 9" target="0, 0.85, 0" up="0, 1, 0"/>
+        </transform>
+        <film type="hdrfilm">
+            <integer name="width" value="480"/>
+            <integer name="height" value="360"/>
+        </film>
+        <sampler type="multijitter">
+            <integer name="sample_count" value="64"/>
+        </sampler>
+    </sensor>
+
+    <bsdf type="twosided" id="plaster">
+        <bsdf type="diffuse">
+            <rgb name="reflectance" value="0.62, 0.6, 0.57"/>
+        </bsdf>
+    </bsdf>
+    <bsdf type="dielectric" id="glass">
+        <string name="int_ior" value="bk7"/>
+        <string name="ext_ior" value="air"/>
+    </bsdf>
+
+    <!-- The floor, a wall, a mirror that leans against it: rectangles. -->
+    <shape type="rectangle">
+        <transform name="to_world">
+            <scale value="9"/>
+            <rotate x="1" angle="-90"/>
+        </transform>
+        <ref id="plaster"/>
+    </shape>
+    <shape type="rectangle">
+        <transform name="to_world">
+            <scale x="9" y="4"/>
+            <translate y="4" z="-3.2"/>
+        </transform>
+        <bsdf type="diffuse">
+            <rgb name="reflectance" value="0.22, 0.34, 0.42"/>
+        </bsdf>
+    </shape>
+    <shape type="rectangle">
+        <transform name="to_world">
+            <scale x="1.5" y="1.3"/>
+            <rotate x="1" angle="-12"/>
+            <translate x="0.2" y="1.3" z="-2.7"/>
+        </transform>
+        <bsdf type="conductor"/>
+    </shape>
+
+    <!-- Behind the camera, for the mirror and the glass. -->
+    <shape type="rectangle">
+        <transform name="to_world">
+            <scale x="9" y="4"/>
+            <rotate y="1" angle="180"/>
+            <translate y="4" z="9.5"/>
+        </transform>
+        <bsdf type="diffuse">
+            <rgb name="reflectance" value="0.8, 0.62, 0.45"/>
+        </bsdf>
+    </shape>
+
+    <!-- An OBJ file with normals of its own. -->
+    <shape type="obj">
+        <string name="filename" value="meshes/knot.obj"/>
+        <transform name="to_world">
+            <scale value="0.72"/>
+            <rotate x="1" angle="78"/>
+            <rotate y="1" angle="-25"/>
+            <translate x="-2.35" y="1.15" z="0.1"/>
+        </transform>
+        <bsdf type="diffuse">
+            <rgb name="reflectance" value="0.75, 0.28, 0.12"/>
+        </bsdf>
+    </shape>
+
+    <!-- A PLY file; face_normals keeps its edges sharp. -->
+    <shape type="ply">
+        <string name="filename" value="meshes/star.ply"/>
+        <boolean name="face_normals" value="true"/>
+        <transform name="to_world">
+            <scale value="0.95"/>
+            <rotate z="1" angle="20.905"/>
+            <rotate y="1" angle="35"/>
+            <translate x="2.3" y="0.755" z="0.3"/>
+        </transform>
+        <bsdf type="diffuse">
+            <rgb name="reflectance" value="0.85, 0.62, 0.14"/>
+        </bsdf>
+    </shape>
+
+    <!-- Exact spheres: one of glass, one that is no more than its mask lets be seen. -->
+    <shape type="sphere">
+        <point name="center" x="-0.15" y="0.75" z="1.5"/>
+        <float name="radius" value="0.75"/>
+        <ref id="glass"/>
+    </shape>
+    <shape type="sphere">
+        <transform name="to_world">
+            <scale value="0.34"/>
+            <translate x="1.25" y="0.34" z="2.2"/>
+        </transform>
+        <bsdf type="mask">
+            <float name="opacity" value="0.6"/>
+            <bsdf type="twosided">
+                <bsdf type="diffuse">
+                    <rgb name="reflectance" value="0.15, 0.5, 0.3"/>
+                </bsdf>
+            </bsdf>
+        </bsdf>
+    </shape>
+
+    <!-- A cube. -->
+    <shape type="cube">
+        <transform name="to_world">
+            <scale value="0.5"/>
+            <rotate y="1" angle="28"/>
+            <translate x="-1.7" y="0.5" z="2.3"/>
+        </transform>
+        <bsdf type="diffuse">
+            <rgb name="reflectance" value="0.3, 0.32, 0.62"/>
+        </bsdf>
+    </shape>
+
+    <!-- The lamp: a rectangle that looks down. -->
+    <shape type="rectangle">
+        <transform name="to_world">
+            <scale x="2.6" y="1.8"/>
+            <rotate x="1" angle="90"/>
+            <translate x="-0.8" y="6" z="2.4"/>
+        </transform>
+        <bsdf type="diffuse">
+            <rgb name="reflectance" value="0"/>
+        </bsdf>
+        <emitter type="area">
+            <rgb name="radiance" value="7.5, 7, 6.2"/>
+        </emitter>
+    </shape>
+"""
+
+SKY = """
+    <integrator type="path">
+        <integer name="max_depth" value="12"/>
+    </integrator>
+
+    <sensor type="perspective">
+        <float name="fov" value="32"/>
+        <transform name="to_world">
+            <lookat origin="3.9, 2.6, 8.4" target="0.25, 1.3, 0" up="0, 1, 0"/>
+        </transform>
+        <film type="hdrfilm">
+            <integer name="width" value="480"/>
+            <integer name="height" value="360"/>
+        </film>
+        <sampler type="independent">
+            <integer name="sample_count" value="64"/>
+        </sampler>
+    </sensor>
+
+    <emitter type="constant">
+        <rgb name="radiance" value="0.82, 0.95, 1.1"/>
+    </emitter>
+
+    <shape type="rectangle">
+        <transform name="to_world">
+            <scale value="60"/>
+            <rotate x="1" angle="-90"/>
+        </transform>
+        <bsdf type="diffuse">
+            <rgb name="reflectance" value="0.34, 0.36, 0.3"/>
+        </bsdf>
+    </shape>
+
+    <shape type="obj">
+        <string name="filename" value="meshes/knot.obj"/>
+        <transform name="to_world">
+            <rotate x="1" angle="82"/>
+            <rotate y="1" angle="24"/>
+            <translate x="-0.35" y="1.58" z="-0.5"/>
+        </transform>
+        <bsdf type="diffuse">
+            <rgb name="reflectance" value="0.8, 0.78, 0.74"/>
+        </bsdf>
+    </shape>
+
+    <shape type="obj">
+        <string name="filename" value="meshes/vase.obj"/>
+        <transform name="to_world">
+            <scale value="0.62"/>
+            <translate x="1.55" z="0.75"/>
+        </transform>
+        <bsdf type="diffuse">
+            <rgb name="reflectance" value="0.66, 0.27, 0.15"/>
+        </bsdf>
+    </shape>
+
+    <shape type="obj">
+        <string name="filename" value="meshes/torus.obj"/>
+        <transform name="to_world">
+            <scale value="0.42"/>
+            <translate x="0.45" y="0.1176" z="1.35"/>
+        </transform>
+        <bsdf type="diffuse">
+            <rgb name="reflectance" value="0.2, 0.42, 0.5"/>
+        </bsdf>
+    </shape>
+"""
+
+
+def scene_text(comment, body):
+    return f'<?xml version="1.0"?>\n<!-- {comment}\n     {LICENCE} -->\n<scene version="3.0.0">{body}</scene>\n'
+
+
+def files():
+    """{path in scenes/: text}"""
+    return {
+        "meshes/star.ply": ply_text(stellated_dodecahedron(), "A small stellated dodecahedron, 60 triangles."),
+        "mitsuba_shapes.xml": scene_text(
+            "A file of Mitsuba 3 with each shape, obj, ply, sphere, rectangle and cube, and each material, under an area light.", SHAPES),
+        "constant_sky.xml": scene_text(
+            "Diffuse things under a sky of one radiance, in the format of Mitsuba 3: all shadows are soft.", SKY),
+    }

@@ -1,0 +1,816 @@
+// Scenes of Mitsuba: what each object becomes, and the errors. The figures are those that Mitsuba 3.9.1 has.
+#include "base/log.h"
+#include "base/table.h"
+#include "image/image.h"
+#include "read/load.h"
+#include "scene/options.h"
+#include "support/error_of.h"
+#include "support/scratch.h"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+using namespace opal;
+using opal::test::error_of;
+
+namespace {
+
+const std::string obj_text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+const std::string ply_text =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+
+std::string transform(const std::string &operations) {
+    return "<transform name='to_world'>" + operations + "</transform>";
+}
+
+struct MitsubaFixture {
+    test::ScratchFolder scratch;
+    MitsubaFixture() {
+        scratch.write("a.obj", obj_text);
+        scratch.write("a.ply", ply_text);
+    }
+    // Loads a scene with `body` from line 2 on.
+    SceneDescription load(const std::string &body, const LoadOptions &options = {}) const {
+        return load_scene(scratch.write("a.xml", "<scene version='3.0.0'>\n" + body + "\n</scene>"), options);
+    }
+    // The errors, without the file's name before the place.
+    std::string error_in(const std::string &body, const LoadOptions &options = {}) const {
+        std::string error = error_of([&] { load(body, options); });
+        const std::string file = (scratch / "a.xml").string();
+        for (size_t at = error.find(file); at != error.npos; at = error.find(file))
+            error.erase(at, file.size());
+        return error;
+    }
+    Mesh shape(const std::string &type, const std::string &body = "") const {
+        const SceneDescription scene = load(fmt::format("<shape type='{}'>{}</shape>", type, body));
+        REQUIRE(scene.meshes.size() == 1);
+        return scene.meshes.front();
+    }
+    Bsdf bsdf(const std::string &type, const std::string &body = "") const {
+        return shape("sphere", fmt::format("<bsdf type='{}'>{}</bsdf>", type, body)).bsdf;
+    }
+    template <class Kind> Kind light(const std::string &type, const std::string &body = "") const {
+        const SceneDescription scene = load(fmt::format("<emitter type='{}'>{}</emitter>", type, body));
+        REQUIRE(scene.lights.size() == 1);
+        return std::get<Kind>(scene.lights.front().parameters);
+    }
+    SceneDescription sensor(const std::string &type, const std::string &body = "") const {
+        return load(fmt::format("<sensor type='{}'>{}</sensor>", type, body));
+    }
+    Camera film(const std::string &body) const {
+        return sensor("perspective", "<film type='hdrfilm'>" + body + "</film>").camera;
+    }
+    Strategy integrator(const std::string &type, const std::string &body = "") const {
+        return load(fmt::format("<integrator type='{}'>{}</integrator>", type, body)).strategy;
+    }
+    // The warnings of a load, without the file's name.
+    std::vector<std::string> warnings_of(const std::string &body, const LoadOptions &options = {}) const {
+        const size_t before = warnings().size();
+        load(body, options);
+        std::vector<std::string> told;
+        for (size_t i = before; i < warnings().size(); i++) {
+            const std::string &line = warnings()[i];
+            const std::string file = (scratch / "a.xml").string();
+            told.push_back(line.starts_with(file) ? line.substr(file.size()) : line);
+        }
+        return told;
+    }
+};
+
+bool near(Vec3 a, Vec3 b) { return length(a - b) < 1e-12; }
+
+const std::string lit = "<emitter type='constant'/>";
+const std::string mirrored = transform("<scale x='-1'/>");
+
+} // namespace
+
+TEST_CASE_METHOD(MitsubaFixture, "spheres: place, size and side", "[mitsuba]") {
+    struct Row {
+        std::string body;
+        Sphere sphere;
+    };
+    const std::string flipped = "<boolean name='flip_normals' value='true'/>";
+    const std::vector<Row> rows = {
+        {"", {{0, 0, 0}, 1, false}},
+        {"<point name='center' x='1' y='2' z='3'/><float name='radius' value='0.5'/>", {{1, 2, 3}, 0.5, false}},
+        {"<point name='center' value='1, 2, 3'/><integer name='radius' value='2'/>" +
+             transform("<scale value='3'/><translate x='1'/>"), // to_world acts after both
+         {{4, 6, 9}, 6, false}},
+        {mirrored, {{0, 0, 0}, 1, true}},
+        {transform("<scale value='-1'/>"), {{0, 0, 0}, 1, true}},
+        {flipped, {{0, 0, 0}, 1, true}},
+        {flipped + mirrored, {{0, 0, 0}, 1, false}},
+        {transform("<rotate y='1' angle='30'/><scale value='0.25'/><rotate x='1' angle='7'/>"),
+         {{0, 0, 0}, 0.25, false}},
+    };
+    for (const Row &row : rows) {
+        INFO(row.body);
+        const Sphere sphere = std::get<Sphere>(shape("sphere", row.body).shape);
+        CHECK(near(sphere.center, row.sphere.center));
+        CHECK(sphere.radius == Approx(row.sphere.radius));
+        CHECK(sphere.inward == row.sphere.inward);
+    }
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "rectangles keep the side of their shading normal where they are mirrored",
+                 "[mitsuba]") {
+    struct Row {
+        std::string body;
+        Vec3 normal;
+    };
+    const std::vector<Row> rows = {{"", {0, 0, 1}},
+                                   {"<boolean name='flip_normals' value='true'/>", {0, 0, -1}},
+                                   {mirrored, {0, 0, 1}},
+                                   {transform("<scale value='-1'/>"), {0, 0, -1}},
+                                   {transform("<rotate x='1' angle='-90'/>"), {0, 1, 0}}};
+    for (const Row &row : rows) {
+        INFO(row.body);
+        const Parallelogram side = std::get<Parallelogram>(shape("rectangle", row.body).shape);
+        CHECK(near(normalize(cross(side.u, side.v)), row.normal));
+        CHECK(length(cross(side.u, side.v)) == Approx(4));
+    }
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "cubes and files of meshes become triangles", "[mitsuba]") {
+    CHECK(std::get<TriangleMesh>(shape("cube").shape).triangles.size() == 12);
+    const std::string obj = "<string name='filename' value='a.obj'/>",
+                      flat = "<boolean name='face_normals' value='true'/>";
+    for (const char *type : {"obj", "ply"}) {
+        const std::string file = fmt::format("<string name='filename' value='a.{}'/>", type);
+        INFO(type);
+        const Mesh mesh = shape(type, file);
+        CHECK(std::get<TriangleMesh>(mesh.shape).triangles.size() == 1);
+        CHECK(std::get<TriangleMesh>(mesh.shape).normals.size() > 0); // Mitsuba makes them
+        CHECK(std::get<TriangleMesh>(shape(type, file + flat).shape).normals.empty());
+        CHECK(mesh.name == fmt::format("a.{}", type));
+    }
+    CHECK(load("<shape type='obj' id='wall'>" + obj + "</shape>").meshes.front().name == "wall");
+    // flip_normals turns the corners' normals and the winding
+    const TriangleMesh turned =
+        std::get<TriangleMesh>(shape("obj", obj + "<boolean name='flip_normals' value='true'/>").shape);
+    CHECK(near(turned.normals[turned.triangles[0][0].normal], {0, 0, -1}));
+    const std::array<Vec3, 3> p = {turned.positions[turned.triangles[0][0].position],
+                                   turned.positions[turned.triangles[0][1].position],
+                                   turned.positions[turned.triangles[0][2].position]};
+    CHECK(cross(p[1] - p[0], p[2] - p[0]).z < 0);
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "lights: units, places and directions", "[mitsuba]") {
+    constexpr double full = 4 * std::numbers::pi;
+    const auto point = light<emitter_point>("point");
+    CHECK(point.power == Color{full, full, full}); // of an intensity of 1
+    CHECK(near(point.position, {0, 0, 0}));
+    CHECK(near(light<emitter_point>("point", "<point name='position' value='1 2 3'/>").position, {1, 2, 3}));
+    const auto moved =
+        light<emitter_point>("point", transform("<translate y='4'/>") + "<rgb name='intensity' value='300'/>");
+    CHECK(near(moved.position, {0, 4, 0}));
+    CHECK(moved.power[2] == Approx(300 * full));
+
+    const auto spot = light<emitter_spot>("spot");
+    CHECK(near(spot.direction, {0, 0, 1}));
+    CHECK(spot.intensity == Color{1, 1, 1});
+    CHECK(spot.cutoff_angle == 20);
+    CHECK(spot.beam_width == 15);
+    CHECK_FALSE(spot.smooth);
+    const auto aimed = light<emitter_spot>("spot", transform("<lookat origin='0 3 0' target='0 0 0' up='0 0 1'/>") +
+                                                       "<float name='cutoff_angle' value='40'/>");
+    CHECK(near(aimed.position, {0, 3, 0}));
+    CHECK(near(normalize(aimed.direction), {0, -1, 0}));
+    CHECK(aimed.beam_width == 30);
+
+    CHECK(near(light<emitter_directional>("directional").direction, {0, 0, 1}));
+    CHECK(light<emitter_directional>("directional").irradiance == Color{1, 1, 1});
+    const auto sun = light<emitter_directional>("directional", "<vector name='direction' value='0 0 -2'/>"
+                                                               "<rgb name='irradiance' value='1 2 3'/>");
+    CHECK(near(normalize(sun.direction), {0, 0, -1}));
+    CHECK(sun.irradiance == Color{1, 2, 3});
+    CHECK(near(normalize(light<emitter_directional>("directional", transform("<rotate y='1' angle='90'/>")).direction),
+               {1, 0, 0}));
+    CHECK(light<emitter_constant>("constant").radiance == Color{1, 1, 1});
+
+    const Mesh lamp = shape("rectangle", "<emitter type='area'/>");
+    CHECK(lamp.radiance == Color{1, 1, 1});
+    CHECK_FALSE(lamp.emits_on_both_sides);
+    CHECK(shape("sphere", "<emitter type='area'><float name='radiance' value='7'/></emitter>").radiance ==
+          Color{7, 7, 7});
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "a scaled directional light keeps its irradiance, and says so", "[mitsuba]") {
+    const std::string sun = "<emitter type='directional'>" + transform("<scale value='2'/>") + "</emitter>";
+    const std::vector<std::string> told = warnings_of(sun + "<shape type='sphere'/>");
+    REQUIRE(told.size() == 1);
+    CHECK_THAT(told[0], Catch::StartsWith(":2:29: to_world scales this light; Mitsuba lights surfaces that many"));
+    CHECK(
+        warnings_of("<emitter type='directional'>" + transform("<scale x='-1'/>") + "</emitter><shape type='sphere'/>")
+            .empty());
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "the angle across the image of perspective cameras is Mitsuba's", "[mitsuba]") {
+    struct Row {
+        std::string body;
+        int width, height;
+        double fov;
+    };
+    const std::string fov = "<float name='fov' value='40'/>";
+    const auto along = [&](const std::string &axis) { return fov + "<string name='fov_axis' value='" + axis + "'/>"; };
+    const std::vector<Row> rows = {{fov, 200, 100, 40},
+                                   {"", 200, 100, 42.31171},
+                                   {"", 768, 576, 38.18},
+                                   {"", 100, 100, 34.02},
+                                   {along("x"), 200, 100, 40},
+                                   {along("y"), 200, 100, 72.10477},
+                                   {along("diagonal"), 200, 100, 36.06479},
+                                   {along("smaller"), 200, 100, 72.10477},
+                                   {along("larger"), 200, 100, 40},
+                                   {along("smaller"), 100, 200, 40},
+                                   {"<string name='focal_length' value='35mm'/>", 200, 100, 57.87119},
+                                   {"<string name='focal_length' value='35'/>", 200, 100, 57.87119},
+                                   {fov, 100, 200, 40}};
+    for (const Row &row : rows) {
+        INFO(row.body << " " << row.width << " x " << row.height);
+        const std::string film = fmt::format("<film type='hdrfilm'><integer name='width' value='{}'/>"
+                                             "<integer name='height' value='{}'/></film>",
+                                             row.width, row.height);
+        const double tolerance = row.width == 200 ? 1e-5 : 5e-3; // as many digits as are known
+        CHECK(sensor("perspective", row.body + film).camera.perspective.fov == Approx(row.fov).margin(tolerance));
+        const Camera lens = sensor("thinlens", "<float name='aperture_radius' value='0.1'/>" + row.body + film).camera;
+        CHECK(lens.thinlens.fov == Approx(row.fov).margin(tolerance));
+    }
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "cameras", "[mitsuba]") {
+    const Camera plain = sensor("perspective").camera;
+    CHECK(plain.kind == CAMERA_perspective);
+    CHECK(plain.near_clip == 0.01);
+    CHECK(plain.far_clip == 1e4);
+    CHECK(plain.perspective.principal_point_x == 0);
+    // The middle of the film looks towards -x, the image's right: the axis is left of it.
+    const Camera shifted =
+        sensor("perspective", "<float name='principal_point_offset_x' value='0.1'/>"
+                              "<float name='principal_point_offset_y' value='0.2'/>"
+                              "<float name='near_clip' value='1'/><float name='far_clip' value='9'/>")
+            .camera;
+    CHECK(shifted.perspective.principal_point_x == -0.1);
+    CHECK(shifted.perspective.principal_point_y == -0.2);
+    CHECK(shifted.near_clip == 1);
+    CHECK(shifted.far_clip == 9);
+
+    const Camera lens = sensor("thinlens", "<float name='aperture_radius' value='0.5'/>").camera;
+    CHECK(lens.kind == CAMERA_thinlens);
+    CHECK(lens.thinlens.aperture_radius == 0.5);
+    CHECK(lens.thinlens.focus_distance == 1e4); // far_clip
+    CHECK(sensor("thinlens", "<float name='aperture_radius' value='0.5'/><float name='focus_distance' value='4'/>")
+              .camera.thinlens.focus_distance == 4);
+
+    const Camera parallel = sensor("orthographic", transform("<scale x='3' y='3'/>")).camera;
+    CHECK(parallel.kind == CAMERA_orthographic);
+    CHECK(near(parallel.to_world.vector({1, 0, 0}), {3, 0, 0}));
+    CHECK(error_in("<sensor type='perspective'>" + transform("<scale value='1.0001'/>") + "</sensor>").empty());
+    CHECK(error_in("<sensor type='perspective'>" + mirrored + "</sensor>").empty());
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "of several sensors one is taken", "[mitsuba]") {
+    const auto one = [](const std::string &id, int width) {
+        return fmt::format("<sensor type='perspective'{}><film type='hdrfilm'><integer name='width' value='{}'/>"
+                           "</film></sensor>",
+                           id.empty() ? "" : " id='" + id + "'", width);
+    };
+    const std::string three = one("left", 10) + one("", 20) + one("right", 30);
+    CHECK(load(three).camera.width == 10);
+    CHECK(load(three, {.sensor = "0"}).camera.width == 10);
+    CHECK(load(three, {.sensor = "1"}).camera.width == 20);
+    CHECK(load(three, {.sensor = "right"}).camera.width == 30);
+    CHECK(load(three, {.sensor = "left"}).hash == load(three).hash);
+    CHECK(load(three, {.sensor = "1"}).hash != load(three).hash); // another image
+    for (const char *wrong : {"3", "-1", "middle"})
+        CHECK(error_in(three, {.sensor = wrong}) ==
+              fmt::format("--sensor {}: there is no such <sensor>; available: 0 (left), 1, 2 (right)", wrong));
+    CHECK(error_in("", {.sensor = "0"}) == "--sensor 0: there is no such <sensor>; available: none");
+    CHECK_THROWS_AS(load(three, {.sensor = "3"}), UsageError);
+    // a mistake in one that is not taken is told all the same
+    CHECK_THAT(error_in(one("", 10) + "\n<sensor type='perspective'><float name='fvo' value='3'/></sensor>"),
+               Catch::StartsWith(":3:28: unknown property 'fvo'"));
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "films: size, crop and filters", "[mitsuba]") {
+    const Camera plain = sensor("perspective").camera;
+    CHECK(plain.width == 768);
+    CHECK(plain.height == 576);
+    CHECK(plain.filter.kind == FILTER_gaussian);
+    CHECK(plain.filter.stddev == 0.5);
+    CHECK(plain.filter.radius == 2);
+    CHECK(plain.crop == Crop{});
+    CHECK(plain.window() == Crop{0, 0, 768, 576, 768, 576});
+    const Camera cropped = film("<integer name='width' value='200'/><integer name='height' value='100'/>"
+                                "<integer name='crop_offset_x' value='50'/><integer name='crop_offset_y' value='20'/>"
+                                "<integer name='crop_width' value='100'/><integer name='crop_height' value='50'/>");
+    CHECK(cropped.window() == Crop{50, 20, 100, 50, 200, 100});
+
+    struct Row {
+        std::string type, body;
+        int kind;
+        double radius, stddev, b, c;
+    };
+    const std::vector<Row> rows = {
+        {"box", "", FILTER_box, 0.5, 0, 0, 0},
+        {"tent", "", FILTER_tent, 1, 0, 0, 0},
+        {"tent", "<float name='radius' value='2'/>", FILTER_tent, 2, 0, 0, 0},
+        {"gaussian", "", FILTER_gaussian, 2, 0.5, 0, 0},
+        {"gaussian", "<float name='stddev' value='1'/>", FILTER_gaussian, 4, 1, 0, 0},
+        {"mitchell", "", FILTER_mitchell, 2, 0, 1.0 / 3, 1.0 / 3},
+        {"mitchell", "<float name='B' value='0'/><float name='C' value='0.5'/>", FILTER_mitchell, 2, 0, 0, 0.5},
+        {"catmullrom", "", FILTER_mitchell, 2, 0, 0, 0.5},
+        {"lanczos", "", FILTER_lanczos, 3, 0, 0, 0},
+        {"lanczos", "<integer name='lobes' value='2'/>", FILTER_lanczos, 2, 0, 0, 0},
+    };
+    for (const Row &row : rows) {
+        INFO(row.type << " " << row.body);
+        const Filter filter = film(fmt::format("<rfilter type='{}'>{}</rfilter>", row.type, row.body)).filter;
+        CHECK(filter.kind == row.kind);
+        CHECK(filter.radius == row.radius);
+        CHECK(filter.given);
+        if (row.kind == FILTER_gaussian)
+            CHECK(filter.stddev == row.stddev);
+        if (row.kind == FILTER_mitchell) {
+            CHECK(filter.b == Approx(row.b));
+            CHECK(filter.c == Approx(row.c));
+        }
+    }
+    // what says how Mitsuba writes the file is accepted
+    CHECK(film("<string name='file_format' value='pfm'/><string name='pixel_format' value='rgba'/>"
+               "<string name='component_format' value='float16'/><boolean name='banner' value='false'/>"
+               "<boolean name='sample_border' value='true'/><boolean name='compensate' value='true'/>")
+              .width == 768);
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "samplers become the nearest of Opal's", "[mitsuba]") {
+    struct Row {
+        std::string type;
+        int sampler;
+    };
+    for (const Row &row : std::vector<Row>{{"independent", CHOICE_sampler_independent},
+                                           {"stratified", CHOICE_sampler_stratified},
+                                           {"multijitter", CHOICE_sampler_sobol},
+                                           {"orthogonal", CHOICE_sampler_sobol},
+                                           {"ldsampler", CHOICE_sampler_sobol}}) {
+        INFO(row.type);
+        const auto with = [&](const std::string &body) {
+            return sensor("perspective", fmt::format("<sampler type='{}'>{}</sampler>", row.type, body));
+        };
+        CHECK(with("").strategy[AXIS_sampler] == row.sampler);
+        CHECK(with("").spp == 4);
+        const SceneDescription ten = with("<integer name='sample_count' value='10'/><integer name='seed' value='3'/>");
+        CHECK(ten.spp == 10); // as asked: Opal's samplers need no rounding
+        CHECK(ten.sample_count_given);
+    }
+    CHECK(sensor("perspective").spp == 4);
+    CHECK(sensor("perspective").strategy[AXIS_sampler] == CHOICE_sampler_independent);
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "integrators: the strategy of path, and what files change of it", "[mitsuba]") {
+    for (const std::string &body :
+         {std::string(), std::string("<integrator type='path'/>"), std::string("<integrator type='volpath'/>"),
+          std::string("<integrator type='moment'><integrator type='path'/></integrator>")}) {
+        INFO(body);
+        const SceneDescription scene = load(body);
+        const Strategy &s = scene.strategy;
+        CHECK(s[AXIS_integrator] == CHOICE_integrator_path);
+        CHECK(s[AXIS_lighting] == CHOICE_lighting_mis);
+        CHECK(s[AXIS_mis] == CHOICE_mis_power);
+        CHECK(s[AXIS_hemisphere] == CHOICE_hemisphere_cosine);
+        CHECK(s[AXIS_emitter_choice] == CHOICE_emitter_choice_power);
+        CHECK(s[AXIS_rr] == CHOICE_rr_throughput_eta);
+        CHECK(s.rr_max == 0.95);
+        CHECK(s.rr_depth == 5);
+        CHECK(s.max_depth == no_limit);
+        CHECK_FALSE(scene.hides_emitters);
+        CHECK(scene.wants_variance == (body.find("moment") != body.npos));
+        CHECK(integrator_name(scene) == "path");
+    }
+    for (const char *light : {"constant", "directional"})
+        CHECK(load(fmt::format("<emitter type='{}'/><emitter type='point'/>", light)).strategy[AXIS_emitter_choice] ==
+              CHOICE_emitter_choice_uniform);
+    CHECK(load("<emitter type='spot'/><emitter type='point'/>").strategy[AXIS_emitter_choice] ==
+          CHOICE_emitter_choice_power);
+    const auto depths = [](int most, int roulette) {
+        return fmt::format("<integer name='max_depth' value='{}'/><integer name='rr_depth' value='{}'/>", most,
+                           roulette);
+    };
+    CHECK(integrator("path", depths(1, 1)).max_depth == 1);
+    CHECK(integrator("path", depths(8, 3)).max_depth == 8);
+    CHECK(integrator("path", depths(8, 3)).rr_depth == 3);
+    CHECK(integrator("path", depths(-1, 3)).max_depth == no_limit);
+    CHECK(load("<integrator type='path'><boolean name='hide_emitters' value='true'/></integrator>").hides_emitters);
+    CHECK(load("<integrator type='moment'><integrator type='direct'><boolean name='hide_emitters' value='true'/>"
+               "</integrator></integrator>")
+              .hides_emitters);
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "direct has samples of both kinds, or of one", "[mitsuba]") {
+    const auto samples = [](const std::string &name, int count) {
+        return fmt::format("<integer name='{}' value='{}'/>", name, count);
+    };
+    struct Row {
+        std::string body;
+        int lighting;
+        unsigned emitter, bsdf;
+    };
+    for (const Row &row :
+         std::vector<Row>{{"", CHOICE_lighting_mis, 1, 1},
+                          {samples("shading_samples", 4), CHOICE_lighting_mis, 4, 4},
+                          {samples("emitter_samples", 3) + samples("bsdf_samples", 2), CHOICE_lighting_mis, 3, 2},
+                          {samples("emitter_samples", 3), CHOICE_lighting_mis, 3, 1},
+                          {samples("bsdf_samples", 0), CHOICE_lighting_emitter, 1, 1},
+                          {samples("emitter_samples", 0), CHOICE_lighting_bsdf, 1, 1}}) {
+        INFO(row.body);
+        const Strategy s = integrator("direct", row.body);
+        CHECK(s[AXIS_integrator] == CHOICE_integrator_direct_lighting);
+        CHECK(s[AXIS_lighting] == row.lighting);
+        CHECK(s[AXIS_mis] == CHOICE_mis_power);
+        CHECK(s.emitter_samples == row.emitter);
+        CHECK(s.bsdf_samples == row.bsdf);
+    }
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "aov: its inner integrator renders, and its channels are named", "[mitsuba]") {
+    const std::string aov = "<integrator type='aov'><string name='aovs' value='dd.y:depth,nn:sh_normal'/>"
+                            "<integrator type='direct'/></integrator>";
+    CHECK(load(aov).strategy[AXIS_integrator] == CHOICE_integrator_direct_lighting);
+    const std::vector<std::string> told = warnings_of(lit + "<shape type='sphere'/>" + aov);
+    REQUIRE(told.size() == 1);
+    CHECK_THAT(told[0], Catch::EndsWith("Opal writes none of these channels: dd.y:depth,nn:sh_normal"));
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "materials", "[mitsuba]") {
+    const auto albedo = [](const Bsdf &made) { return made.as<bsdf_diffuse_record>().albedo; };
+    CHECK(albedo(shape("sphere").bsdf).value[0] == 0.5f);
+    CHECK(albedo(bsdf("diffuse")).value[0] == 0.5f);
+    CHECK(albedo(bsdf("diffuse", "<rgb name='reflectance' value='0.1, 0.2, 0.3'/>")).value[2] == 0.3f);
+    CHECK(albedo(bsdf("diffuse", "<spectrum name='reflectance' value='1'/>")).value[1] == 1.f);
+
+    const auto glass = [&](const std::string &body) { return bsdf("dielectric", body).as<bsdf_dielectric_record>(); };
+    CHECK(glass("").int_ior.value == 1.5046f); // bk7 in air
+    CHECK(glass("").ext_ior.value == 1.000277f);
+    CHECK(glass("<float name='int_ior' value='1.9'/>").int_ior.value == 1.9f);
+    CHECK(glass("<string name='int_ior' value='Diamond'/>").int_ior.value == 2.419f);
+    CHECK(glass("<string name='ext_ior' value='water'/>").ext_ior.value == 1.333f);
+
+    CHECK(bsdf("conductor").is<bsdf_mirror_record>());
+    CHECK(bsdf("conductor", "<string name='material' value='none'/>").is<bsdf_mirror_record>());
+    CHECK(bsdf("null").is<bsdf_null_record>());
+
+    const std::string inner = "<bsdf type='diffuse'><float name='reflectance' value='0.25'/></bsdf>";
+    const Bsdf two = bsdf("twosided", inner);
+    CHECK(two.is<bsdf_twosided_record>());
+    REQUIRE(two.children.size() == 1); // of both sides
+    CHECK(albedo(two.children[0]).value[0] == 0.25f);
+    const Bsdf pair = bsdf("twosided", inner + "<bsdf type='diffuse'/>");
+    CHECK(albedo(pair.children[0]).value[0] == 0.25f);
+    CHECK(albedo(pair.children[1]).value[0] == 0.5f);
+    CHECK(bsdf("twosided", "<bsdf type='twosided'>" + inner + "</bsdf>").children[0].is<bsdf_twosided_record>());
+
+    const Bsdf mask = bsdf("mask", inner);
+    REQUIRE(mask.is<bsdf_mask_record>());
+    CHECK(mask.as<bsdf_mask_record>().opacity.value == 0.5f);
+    CHECK(albedo(mask.children.at(0)).value[0] == 0.25f);
+    CHECK(bsdf("mask", inner + "<float name='opacity' value='0.2'/>").as<bsdf_mask_record>().opacity.value == 0.2f);
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "one material serves all that refer to it", "[mitsuba]") {
+    const SceneDescription scene = load("<shape type='sphere'><ref id='red'/></shape>"
+                                        "<bsdf type='diffuse' id='red'><rgb name='reflectance' value='0.5 0 0'/></bsdf>"
+                                        "<shape type='cube'><ref id='red'/></shape><shape type='cube'/>");
+    REQUIRE(scene.meshes.size() == 3);
+    CHECK(scene.meshes[0].bsdf.words == scene.meshes[1].bsdf.words);
+    CHECK(scene.meshes[2].bsdf.place.line == 0);
+    REQUIRE(scene.plugins.size() == 3);
+    CHECK(scene.plugins[0].type == "diffuse");
+    CHECK(scene.plugins[0].count == 1);
+    CHECK(scene.plugins[2].type == "cube");
+    CHECK(scene.plugins[2].becomes == "triangles");
+    CHECK(scene.plugins[2].count == 2);
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "what Opal cannot render is an error with its place", "[mitsuba]") {
+    struct Row {
+        std::string body, error;
+    };
+    const auto in_shape = [](const std::string &body) { return "<shape type='sphere'>\n" + body + "</shape>"; };
+    const auto in_bsdf = [&](const std::string &type, const std::string &body) {
+        return "<shape type='sphere'><bsdf type='" + type + "'>\n" + body + "</bsdf></shape>";
+    };
+    const auto in_light = [](const std::string &type, const std::string &body) {
+        return "<emitter type='" + type + "'>\n" + body + "</emitter>";
+    };
+    const auto in_sensor = [](const std::string &type, const std::string &body) {
+        return "<sensor type='" + type + "'>\n" + body + "</sensor>";
+    };
+    const auto in_film = [&](const std::string &body) {
+        return in_sensor("perspective", "<film type='hdrfilm'>" + body + "</film>");
+    };
+    const auto in_integrator = [](const std::string &type, const std::string &body) {
+        return "<integrator type='" + type + "'>\n" + body + "</integrator>";
+    };
+    const std::vector<Row> rows = {
+        {in_shape(transform("<scale x='2'/>")),
+         ":3:1: property 'to_world': a sphere must be scaled alike along all axes"},
+        {in_shape(transform("<matrix value='1 0.5 0 0 1 0 0 0 1'/>")), ":3:1: property 'to_world': a sphere must be"},
+        {in_shape("<float name='radius' value='-1'/>"), ":3:1: property 'radius': must be above 0"},
+        {in_shape("<float name='raduis' value='1'/>"),
+         ":3:1: unknown property 'raduis' of shape 'sphere'; did you mean 'radius'?"},
+        {in_shape("<string name='filename' value='a.obj'/>"), ":3:1: unknown property 'filename' of shape 'sphere'"},
+        {in_shape("<bsdf type='diffuse'/><bsdf type='diffuse'/>"), ":3:23: a second <bsdf> in the <shape>"},
+        {in_shape("<emitter type='area'/><emitter type='area'/>"), ":3:23: a second <emitter> in the <shape>"},
+        {in_shape("<emitter type='point'/>"), ":3:1: emitter 'point' must stand in a <scene>, not in a <shape>"},
+        {in_light("area", ""), ":2:1: emitter 'area' must stand in a <shape>, not in a <scene>"},
+        {"<shape type='obj'/>", ":2:1: the shape lacks its filename"},
+        {"<shape type='obj'>\n<string name='filename' value='b.obj'/></shape>", ":3:1: property 'filename': "},
+        {in_bsdf("diffuse", "<rgb name='reflectance' value='1.5'/>"),
+         ":3:1: property 'reflectance': 1.5, 1.5, 1.5 is no"},
+        {in_bsdf("dielectric", "<string name='int_ior' value='bk8'/>"),
+         ":3:1: property 'int_ior': unknown medium 'bk8'; did you mean 'bk7'?"},
+        {in_bsdf("dielectric", "<float name='int_ior' value='-1'/>"), ":3:1: property 'int_ior': must be above 0"},
+        {in_bsdf("dielectric", "<rgb name='int_ior' value='1'/>"),
+         ":3:1: property 'int_ior' is a <rgb> here, but must"},
+        {in_bsdf("dielectric", "<float name='specular_reflectance' value='0.5'/>"),
+         ":3:1: property 'specular_reflectance': Opal has only 1 here yet"},
+        {in_bsdf("conductor", "<string name='material' value='Au'/>"),
+         ":3:1: property 'material': Opal has only the conductor"},
+        {in_bsdf("conductor", "<float name='eta' value='1'/>"), ":3:1: property 'eta': Opal has only the conductor"},
+        {in_bsdf("twosided", "<bsdf type='dielectric'/>"), ":3:1: a twosided cannot hold a BSDF that light passes"},
+        {in_bsdf("twosided", "<bsdf type='null'/>"), ":3:1: a twosided cannot hold a BSDF that light passes"},
+        {in_bsdf("twosided", "<bsdf type='mask'><bsdf type='diffuse'/></bsdf>"), ":3:1: a twosided cannot hold a BSDF"},
+        {in_bsdf("twosided", ""), ":2:22: a twosided has 1 or 2 <bsdf> within it, not 0"},
+        {in_bsdf("mask", ""), ":2:22: a mask has 1 <bsdf> within it, not 0"},
+        {in_bsdf("mask", "<bsdf type='diffuse'/><bsdf type='diffuse'/>"),
+         ":2:22: a mask has 1 <bsdf> within it, not 2"},
+        {in_bsdf("null", "<float name='reflectance' value='1'/>"),
+         ":3:1: unknown property 'reflectance' of bsdf 'null'"},
+        {in_light("point", "<point name='position' value='1 2 3'/>" + transform("")),
+         ":3:1: property 'position': stands beside to_world"},
+        {in_light("directional", "<vector name='direction' value='1 2 3'/>" + transform("")),
+         ":3:1: property 'direction': stands beside to_world"},
+        {in_light("directional", "<vector name='direction' value='0 0 0'/>"),
+         ":3:1: property 'direction': must not be"},
+        {in_light("spot", "<point name='position' value='1 2 3'/>"),
+         ":3:1: unknown property 'position' of emitter 'spot'"},
+        {in_light("spot", transform("<scale z='2'/>")), ":3:1: property 'to_world': a spot light must be scaled alike"},
+        {in_light("spot", "<texture name='texture' type='checkerboard'/>"),
+         ":3:1: property 'texture': Opal has no textured spot yet"},
+        {in_bsdf("conductor", "<float name='eta' value='1'/><float name='k' value='2'/>"),
+         ":3:1: property 'eta': Opal"},
+        {in_light("spot", "<float name='cutoff_angle' value='0'/>"), ":3:1: property 'cutoff_angle': must be above 0"},
+        {in_light("constant", "<rgb name='radiance' value='-1 0 0'/>"),
+         ":3:1: property 'radiance': must not be negative"},
+        {in_sensor("perspective", transform("<scale value='1.01'/>")),
+         ":3:1: property 'to_world': must not scale a perspective camera"},
+        {in_sensor("thinlens", transform("<scale value='1.01'/>") + "<float name='aperture_radius' value='1'/>"),
+         ":3:1: property 'to_world': must not scale a thinlens camera"},
+        {in_sensor("thinlens", ""), ":2:1: the camera lacks its aperture_radius"},
+        {in_sensor("perspective", "<float name='fov' value='180'/>"),
+         ":3:1: property 'fov': must be above 0 and below 180"},
+        {in_sensor("perspective", "<float name='fov' value='40'/><string name='focal_length' value='50mm'/>"),
+         ":3:31: property 'focal_length': stands beside fov"},
+        {in_sensor("perspective", "<string name='focal_length' value='50cm'/>"),
+         ":3:1: property 'focal_length': must be a length in millimetres"},
+        {in_sensor("perspective", "<float name='fov' value='40'/><string name='fov_axis' value='z'/>"),
+         ":3:31: property 'fov_axis': unknown axis 'z'; available: x, y, diagonal, smaller, larger"},
+        {in_sensor("perspective", "<string name='fov_axis' value='x'/>"), ":3:1: property 'fov_axis': means nothing"},
+        {in_sensor("perspective", "<float name='near_clip' value='0'/>"),
+         ":3:1: property 'near_clip': must be above 0"},
+        {in_sensor("perspective", "<float name='far_clip' value='0.001'/>"),
+         ":3:1: property 'far_clip': must be larger"},
+        {in_sensor("orthographic", "<float name='fov' value='40'/>"), ":3:1: unknown property 'fov'"},
+        {in_sensor("perspective", "<film type='hdrfilm'/><film type='hdrfilm'/>"), ":3:23: a second <film>"},
+        {in_film("<integer name='crop_offset_x' value='9'/>"), ":3:1: a crop of 768 x 576 pixels at 9, 0 is no part"},
+        {in_film("<integer name='width' value='0'/>"), ":3:22: property 'width': must be at least 1 pixel"},
+        {in_film("<string name='pixel_format' value='rbg'/>"), ":3:22: property 'pixel_format': unknown format 'rbg'"},
+        {in_film("<rfilter type='gaussian'><float name='stddev' value='0'/></rfilter>"), ":3:22: gaussian, radius 0"},
+        {in_film("<rfilter type='box'/><rfilter type='box'/>"), ":3:43: a second <rfilter>"},
+        {in_sensor("perspective", "<sampler type='stratified'><boolean name='jitter' value='false'/></sampler>"),
+         ":3:28: property 'jitter': Opal jitters"},
+        {in_sensor("perspective", "<sampler type='independent'><integer name='sample_count' value='0'/></sampler>"),
+         ":3:29: property 'sample_count': must be at least 1"},
+        {in_integrator("path", "<integer name='max_depth' value='0'/>"),
+         ":3:1: property 'max_depth': 0 would be a black"},
+        {in_integrator("path", "<integer name='max_depth' value='-2'/>"),
+         ":3:1: property 'max_depth': must be at least 1"},
+        {in_integrator("path", "<integer name='rr_depth' value='0'/>"),
+         ":3:1: property 'rr_depth': must be at least 1"},
+        {in_integrator("direct", "<integer name='shading_samples' value='2'/><integer name='bsdf_samples' value='1'/>"),
+         ":3:1: property 'shading_samples': stands beside"},
+        {in_integrator("direct", "<integer name='shading_samples' value='0'/>"),
+         ":2:1: emitter_samples and bsdf_samples are both 0"},
+        {in_integrator("moment", ""), ":2:1: moment holds no <integrator> that renders"},
+        {in_integrator("aov", "<integrator type='path'/>"), ":2:1: aov lacks its property 'aovs'"},
+        {in_integrator("moment", "<integrator type='path'/><integrator type='path'/>"), ":3:26: a second <integrator>"},
+        {"<integrator type='path'/><integrator type='path'/>", ":2:26: a second <integrator> in the <scene>"},
+    };
+    for (const Row &row : rows) {
+        INFO(row.body);
+        const std::string error = error_in(row.body);
+        CHECK_THAT(error, Catch::StartsWith(row.error));
+        CHECK(error.find('\n') == error.npos);
+    }
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "plug-ins that Opal does not have are all named in one run", "[mitsuba]") {
+    const std::string body = "<shape type='cylinder'/>\n<shape type='cylinder'><bsdf type='plastic'/></shape>\n"
+                             "<bsdf type='plastic' id='b'/>\n<emitter type='envmap'><string name='filename' value='x'/>"
+                             "</emitter>\n<medium type='homogeneous' id='m'/>\n"
+                             "<shape type='sphere'><bsdf type='diffuse'><texture name='reflectance' type='volume'>"
+                             "<string name='filename' value='x.png'/></texture></bsdf></shape>\n"
+                             "<integrator type='ptracer'/><sensor type='batch'/>\n"
+                             "<sensor type='perspective'><film type='specfilm'/><sampler type='halton'/></sensor>";
+    CHECK(
+        error_in(body) ==
+        ":2:1: unknown shape type 'cylinder' (2 in the scene); available: obj, ply, sphere, rectangle, cube\n"
+        ":3:24: unknown bsdf type 'plastic' (2 in the scene); available: diffuse, dielectric, conductor, twosided, "
+        "mask, "
+        "null\n"
+        ":5:1: unknown emitter type 'envmap'; available: area, point, spot, directional, constant\n"
+        ":6:1: unknown medium type 'homogeneous'; available: none\n"
+        ":7:43: unknown texture type 'volume'; available: checkerboard, bitmap\n"
+        ":8:1: unknown integrator type 'ptracer'; available: path, volpath, volpathmis, direct, moment, aov\n"
+        ":8:29: unknown sensor type 'batch'; available: perspective, thinlens, orthographic\n"
+        ":9:28: unknown film type 'specfilm'; available: hdrfilm\n"
+        ":9:51: unknown sampler type 'halton'; available: independent, stratified, multijitter, orthogonal, ldsampler");
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "lenient: what stands in for a plug-in is said", "[mitsuba]") {
+    const LoadOptions lenient{.lenient = true};
+    const std::string body =
+        "<shape type='disk'/><shape type='sphere'><bsdf type='plastic'><bsdf type='x'/></bsdf></shape>\n"
+        "<emitter type='constant'><texture name='radiance' type='checkerboard'><float name='color0' "
+        "value='0.6'/></texture>"
+        "</emitter>\n"
+        "<shape type='cube'><bsdf type='diffuse'><texture name='reflectance' type='volume'/></bsdf></shape>";
+    const SceneDescription scene = load(body, lenient);
+    REQUIRE(scene.meshes.size() == 2);
+    CHECK(scene.meshes[0].bsdf.as<bsdf_diffuse_record>().albedo.value[0] == 0.5f);
+    CHECK(scene.meshes[1].bsdf.as<bsdf_diffuse_record>().albedo.value[0] == 0.5f);
+    REQUIRE(scene.lights.size() == 1);
+    CHECK(std::get<emitter_constant>(scene.lights[0].parameters).radiance[1] == Approx(0.4));
+    std::vector<std::string> told = warnings_of(body, lenient);
+    std::ranges::sort(told);
+    REQUIRE(told.size() == 4);
+    CHECK_THAT(told[0],
+               Catch::StartsWith(":2:1: unknown shape type 'disk'") && Catch::EndsWith("; the shape is left out"));
+    CHECK_THAT(told[1], Catch::StartsWith(":2:42: unknown bsdf type 'plastic'") &&
+                            Catch::EndsWith("; a diffuse one of reflectance 0.5 stands in for it"));
+    CHECK(told[2] == ":3:26: property 'radiance': Opal has no texture here yet; 0.4 0.4 0.4 stands in for it");
+    CHECK_THAT(told[3],
+               Catch::StartsWith(":4:41: unknown texture type 'volume'") && Catch::EndsWith("; 0.5 stands in for it"));
+    CHECK(error_in("<emitter type='constant'><texture name='radiance' type='checkerboard'/></emitter>") ==
+          ":2:26: property 'radiance': Opal has no texture here yet");
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "textures of reflectance and opacity", "[mitsuba]") {
+    const auto texture_of = [&](const Bsdf &made) {
+        REQUIRE(made.textures.size() == 1);
+        return made.textures.begin()->second;
+    };
+    const auto textured_cube = [&](const std::string &type, const std::string &body) {
+        return shape("cube", fmt::format("<bsdf type='{}'>{}</bsdf>", type, body)).bsdf;
+    };
+    const auto textured = [&](const std::string &type, const std::string &body) {
+        return textured_cube("diffuse", fmt::format("<texture name='reflectance' type='{}'>{}</texture>", type, body));
+    };
+    const Bsdf plain = textured("checkerboard", "");
+    CHECK(plain.as<bsdf_diffuse_record>().albedo.value[1] == 1.f);
+    const auto squares = std::get<CheckerboardTexture>(texture_of(plain));
+    CHECK(squares.color0 == Color{0.4, 0.4, 0.4});
+    CHECK(squares.color1 == Color{0.2, 0.2, 0.2});
+    CHECK(squares.to_uv == identity_uv);
+    const auto moved = std::get<CheckerboardTexture>(texture_of(textured(
+        "checkerboard", "<rgb name='color0' value='0.1 0.2 0.3'/><float name='color1' value='0.9'/>"
+                        "<transform name='to_uv'><scale x='5' y='4'/><translate x='0.5' y='0.25'/></transform>")));
+    CHECK(moved.color0 == Color{0.1, 0.2, 0.3});
+    CHECK(moved.color1[2] == 0.9);
+    CHECK(moved.to_uv == UvTransform{{{5, 0, 0.5}, {0, 4, 0.25}}});
+    // a 3 x 3 matrix loses its translation, as in Mitsuba
+    CHECK(std::get<CheckerboardTexture>(
+              texture_of(
+                  textured("checkerboard", "<transform name='to_uv'><matrix value='2 0 7 0 3 7 0 0 1'/></transform>")))
+              .to_uv == UvTransform{{{2, 0, 0}, {0, 3, 0}}});
+
+    Image image;
+    image.width = 2;
+    image.height = 1;
+    image.layers = {{"R", {0.5f, 1}}, {"G", {0.25f, 1}}, {"B", {0, 1}}};
+    write_exr(image, scratch / "a.exr");
+    const std::string file = "<string name='filename' value='a.exr'/>";
+    const auto bitmap = std::get<BitmapTexture>(texture_of(textured("bitmap", file)));
+    CHECK(bitmap.picture->width == 2);
+    CHECK_FALSE(bitmap.raw);
+    CHECK_FALSE(bitmap.nearest);
+    CHECK(bitmap.wrap == WRAP_repeat);
+    const auto other = std::get<BitmapTexture>(texture_of(
+        textured("bitmap", file + "<string name='filter_type' value='nearest'/><boolean name='raw' value='true'/>"
+                                  "<string name='wrap_mode' value='clamp'/>")));
+    CHECK(other.raw);
+    CHECK(other.nearest);
+    CHECK(other.wrap == WRAP_clamp);
+    const Bsdf mask = textured_cube("mask", "<texture name='opacity' type='checkerboard'/><bsdf type='diffuse'/>");
+    CHECK(mask.as<bsdf_mask_record>().opacity.value == 1.f);
+    CHECK(mask.textures.size() == 1);
+    // A turned rectangle's sides are exchanged, but not its texture's.
+    const std::string board =
+        "<bsdf type='twosided'><bsdf type='diffuse'><texture name='reflectance' type='checkerboard'>"
+        "<transform name='to_uv'><scale x='5' y='4'/></transform></texture></bsdf></bsdf>";
+    for (const std::string &turn : {mirrored, std::string("<boolean name='flip_normals' value='true'/>")}) {
+        const Bsdf front = shape("rectangle", turn + board).bsdf.children.at(0);
+        CHECK(std::get<CheckerboardTexture>(texture_of(front)).to_uv == UvTransform{{{0, 5, 0}, {4, 0, 0}}});
+    }
+    const std::string ball = "<shape type='sphere'>" + board + "</shape>";
+    CHECK(error_in(ball) == ":2:1: Opal has no textures on spheres yet");
+    const Bsdf grey = load(ball, {.lenient = true}).meshes.at(0).bsdf.children.at(0);
+    CHECK(grey.textures.empty());
+    CHECK(grey.as<bsdf_diffuse_record>().albedo.value[2] == 0.5f);
+    // two materials share the picture
+    const SceneDescription scene =
+        load("<texture type='bitmap' id='t'>" + file +
+             "</texture><shape type='cube'>"
+             "<bsdf type='diffuse'><ref name='reflectance' id='t'/></bsdf></shape><shape type='cube'>"
+             "<bsdf type='diffuse'><texture name='reflectance' type='bitmap'>" +
+             file + "</texture></bsdf></shape>");
+    CHECK(std::get<BitmapTexture>(texture_of(scene.meshes[0].bsdf)).picture ==
+          std::get<BitmapTexture>(texture_of(scene.meshes[1].bsdf)).picture);
+
+    const auto error = [&](const std::string &body) {
+        return error_in("<bsdf type='diffuse'><texture name='reflectance' type='bitmap'>\n" + body +
+                        "</texture></bsdf>");
+    };
+    CHECK(error("") == ":2:22: the texture lacks its filename: <string name=\"filename\" value=\"a.png\"/>");
+    CHECK(error(file + "<string name='filter_type' value='ewa'/>") ==
+          ":3:40: property 'filter_type': unknown value 'ewa'; available: bilinear, nearest");
+    CHECK_THAT(error("<string name='filename' value='b.png'/>"), Catch::StartsWith(":3:1: property 'filename': "));
+    const std::string no_image = "<string name='filename' value='a.obj'/>";
+    CHECK_THAT(error(no_image), Catch::StartsWith(":3:1: property 'filename': ") && Catch::Contains("is no image"));
+    const std::vector<std::string> told =
+        warnings_of("<emitter type='constant'/><shape type='cube'><bsdf type='diffuse'><texture name='reflectance' "
+                    "type='bitmap'>" +
+                        no_image + "</texture></bsdf></shape>",
+                    {.lenient = true});
+    REQUIRE(told.size() == 1);
+    CHECK_THAT(told[0], Catch::EndsWith("; 0.5 stands in for the texture"));
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "without a sensor or an integrator there are defaults", "[mitsuba]") {
+    const SceneDescription scene = load("<shape type='sphere'><emitter type='area'/></shape>");
+    CHECK(scene.camera.width == 768);
+    CHECK(scene.camera.kind == CAMERA_perspective);
+    CHECK(scene.camera.perspective.fov == Approx(38.18).margin(5e-3));
+    CHECK(scene.spp == 4);
+    CHECK(scene.dialect == Dialect::mitsuba);
+    CHECK(warnings_of(lit).empty()); // the sky is seen
+    CHECK(warnings_of("<shape type='sphere'/>") ==
+          std::vector<std::string>{":1:1: the scene has no <emitter>; it renders black"});
+}
+
+TEST_CASE("the format is told by the version and the tags", "[mitsuba]") {
+    const test::ScratchFolder scratch;
+    const auto load = [&](const std::string &text, const LoadOptions &options = {}) {
+        return load_scene(scratch.write("a.xml", text), options);
+    };
+    const std::string nori =
+        "<scene{}><camera type='perspective'/><mesh type='parallelogram'><point name='origin' "
+        "value='0 0 0'/><vector name='u' value='1 0 0'/><vector name='v' value='0 1 0'/></mesh></scene>";
+    CHECK(load("<scene version='3.0.0'><shape type='sphere'/></scene>").dialect == Dialect::mitsuba);
+    CHECK(load("<scene version='0.6.0'><shape type='sphere'><transform name='toWorld'><scale value='2'/></transform>"
+               "</shape></scene>")
+              .meshes.size() == 1);
+    CHECK(load(fmt::format(fmt::runtime(nori), "")).dialect == Dialect::upstream);
+    CHECK(load(fmt::format(fmt::runtime(nori), " version='1.0'")).dialect == Dialect::upstream);
+    CHECK(load(fmt::format(fmt::runtime(nori), " version='3.0.0'")).dialect == Dialect::upstream);
+    CHECK(load("<scene version='3.0.0'><shape type='sphere'/></scene>", {.dialect = "mitsuba"}).meshes.size() == 1);
+    CHECK_THAT(error_of([&] { load("<scene><shape type='sphere'/><sensor type='perspective'/></scene>"); }),
+               Catch::EndsWith("a.xml: has tags of Mitsuba, but its <scene> lacks the version that a scene of Mitsuba "
+                               "has, as in <scene version=\"3.0.0\">"));
+    CHECK_THAT(error_of([&] { load("<scene><shape type='sphere'/></scene>", {.dialect = "mitsuba"}); }),
+               Catch::Contains("lacks the attribute 'version'"));
+    CHECK_THAT(error_of([&] { load("<scene version='3.0.0'><shape type='sphere'/></scene>", {.dialect = "eth"}); }),
+               Catch::Contains("is a scene of Mitsuba, not one of Nori; render it: opal "));
+    CHECK_THAT(error_of([&] { load(fmt::format(fmt::runtime(nori), ""), {.sensor = "0"}); }),
+               Catch::Contains("--sensor 0: a scene of Nori has one camera"));
+    CHECK_THAT(error_of([&] { load("<bsdf version='3.0.0' type='diffuse'/>"); }),
+               Catch::EndsWith("a.xml:1:1: the root is a <bsdf>; a scene's is <scene version=\"3.0.0\">"));
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "the scene's hash is that of all files", "[mitsuba]") {
+    const std::string body =
+        "<include filename='part.xml'/><shape type='obj'><string name='filename' value='a.obj'/></shape>";
+    scratch.write("part.xml", "<scene version='3.0.0'><shape type='cube'/></scene>");
+    const std::string first = load(body).hash;
+    CHECK(load(body).hash == first);
+    scratch.write("a.obj", obj_text + "# \n");
+    const std::string second = load(body).hash;
+    CHECK(second != first);
+    scratch.write("part.xml", "<scene version='3.0.0'><shape type='cube'/> </scene>");
+    CHECK(load(body).hash != second);
+}
