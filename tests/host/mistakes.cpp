@@ -160,8 +160,8 @@ TEST_CASE_METHOD(MistakesFixture, "lenient: unknown types get something in their
     const Lines misplaced = warnings_of(camera + light + "<emitter type='area'/>");
     REQUIRE(misplaced.size() == 1);
     CHECK(misplaced[0] == ":4:1: emitter 'area' must stand in a <mesh>, not in a <scene>; it is left out");
-    CHECK(check(camera + light + "<mesh type='sphere'><point name='center' value='0 0 0'/></mesh>",
-                ":4:1: unknown mesh type 'sphere'", "the shape is left out")
+    CHECK(check(camera + light + "<mesh type='torus'><point name='center' value='0 0 0'/></mesh>",
+                ":4:1: unknown mesh type 'torus'", "the shape is left out")
               .meshes.size() == 1);
     CHECK(check(camera + light + "<integrator type='photonmapper'><integer name='photonCount' value='9'/></integrator>",
                 "unknown integrator type 'photonmapper'", "path_mis stands in for it")
