@@ -1,6 +1,7 @@
 // Scenes of Mitsuba: what each object becomes, and the errors. The figures are those that Mitsuba 3.9.1 has.
 #include "base/log.h"
 #include "base/table.h"
+#include "commands/options.h"
 #include "image/image.h"
 #include "read/load.h"
 #include "scene/options.h"
@@ -311,6 +312,13 @@ TEST_CASE_METHOD(MitsubaFixture, "films: size, crop and filters", "[mitsuba]") {
                                 "<integer name='crop_width' value='100'/><integer name='crop_height' value='50'/>");
     CHECK(cropped.window() == Crop{50, 20, 100, 50, 200, 100});
 
+    Camera halved = cropped; // by --width: the crop shows the same part
+    set_size(halved, 100, 0);
+    CHECK(halved.window() == Crop{25, 10, 50, 25, 100, 50});
+    Camera tiny = cropped;
+    set_size(tiny, 1, 0);
+    CHECK(tiny.window() == Crop{0, 0, 1, 1, 1, 1});
+
     struct Row {
         std::string type, body;
         int kind;
@@ -409,6 +417,18 @@ TEST_CASE_METHOD(MitsubaFixture, "integrators: the strategy of path, and what fi
     CHECK(load("<integrator type='moment'><integrator type='direct'><boolean name='hide_emitters' value='true'/>"
                "</integrator></integrator>")
               .hides_emitters);
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "volpath would find a point light through a mask: a warning says so", "[mitsuba]") {
+    const std::string point = "<emitter type='point'/>", plain = "<shape type='cube'/>",
+                      mask = "<shape type='cube'><bsdf type='mask'><bsdf type='diffuse'/></bsdf></shape>",
+                      volpath = "<integrator type='volpath'/>";
+    const std::vector<std::string> told = warnings_of(point + mask + volpath);
+    REQUIRE(told.size() == 1);
+    CHECK_THAT(told[0], Catch::StartsWith(":2:1: Mitsuba's volpath finds this light through mask and null"));
+    CHECK(warnings_of(point + plain + volpath).empty());
+    CHECK(warnings_of(lit + mask + volpath).empty());
+    CHECK(warnings_of(point + mask + "<integrator type='path'/>").empty());
 }
 
 TEST_CASE_METHOD(MitsubaFixture, "direct has samples of both kinds, or of one", "[mitsuba]") {
