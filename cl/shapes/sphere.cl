@@ -12,6 +12,11 @@
 #include "shapes/list.h"
 #include "shared/types.h"
 #include "surface.cl"
+#if LANES == 1
+#include "shapes/one_lane/places.cl"
+#else
+#include "shapes/many_lanes/places.cl"
+#endif
 
 // BlockTest's coordinate u is 1 where the ray leaves the sphere, 0 where it enters it. d is (shear_x, shear_y, 1) along
 // kx, ky, kz here, turned to the ray's direction.
