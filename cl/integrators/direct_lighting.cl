@@ -45,6 +45,7 @@ static mask back_to_first_surface(const Scene *scene, Path *path, Hit hit, mask 
     if (!ANY(back)) return back;
     path->ray = ray_pick(back, path->first_ray, path->ray);
     path->throughput = v3_pick(back, v3_all((real)(1)), path->throughput);
+    path->straight = path->straight | back;
     *s = surface_pick(back, surface_at(scene, path->first_ray, path->first_hit, back), *s);
     return back;
 }

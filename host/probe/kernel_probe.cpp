@@ -50,6 +50,7 @@ Planes corner_numbers() {
 FlatScene scene_of_bsdfs(const std::vector<Bsdf> &bsdfs) {
     SceneDescription description;
     description.strategy.specialise = Specialise::off;
+    description.strategy[AXIS_integrator] = CHOICE_integrator_path; // which asks BSDFs
     for (const Bsdf &bsdf : bsdfs) {
         description.meshes.emplace_back();
         description.meshes.back().bsdf = bsdf;

@@ -107,10 +107,14 @@ Finding check_corners(KernelProbe &probe, unsigned id, Vec3 wi, const std::strin
     return none_wrong("BSDFs: not finite at corners", invalid, subject);
 }
 
+// Whether some of the light that meets the back has a density.
 bool is_seen_from_behind(KernelProbe &probe, unsigned id) {
     const Planes drawn = probe.bsdf_sample(id, direction_at(130), random_numbers(probe, 64, 0));
-    const auto begin = drawn.values.begin() + std::ptrdiff_t(BSDF_WEIGHT_R * drawn.stride);
-    return std::any_of(begin, begin + std::ptrdiff_t(3 * drawn.stride), [](float weight) { return weight > 0; });
+    bool seen = false;
+    for (size_t i = 0; i < drawn.count; i++)
+        for (size_t c = 0; c < 3; c++)
+            seen = seen || (drawn.at(BSDF_WEIGHT_R + c, i) > 0 && !is_discrete_sample(drawn, i));
+    return seen;
 }
 
 // A boundary between two media, seen from wi: indices of refraction on that side and beyond. Nothing for kinds whose
