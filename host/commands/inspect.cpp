@@ -70,11 +70,18 @@ std::string parameters_text(Light light) {
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-// "diffuse, albedo 0.5 0.5 0.5"; a BSDF that leads to others is followed by them
+std::string texture_text(const CheckerboardTexture &texture) {
+    return fmt::format("a checkerboard of {} and {}", color_text(texture.color0), color_text(texture.color1));
+}
+std::string texture_text(const BitmapTexture &texture) {
+    return fmt::format("a bitmap of {} x {} pixels", texture.picture->width, texture.picture->height);
+}
+
+// "diffuse, albedo 0.5 0.5 0.5"; a BSDF that leads to others is followed by them: "twosided (mirror)"
 std::string bsdf_text(const Bsdf &bsdf) {
     std::string text = bsdf_name(bsdf.kind());
     const auto number = [&](size_t word) { return std::bit_cast<float>(bsdf.words[word]); };
-    for (const Parameter &parameter : bsdf_parameters(bsdf.kind()))
+    for (const Parameter &parameter : bsdf_parameters(bsdf.kind())) {
         if (parameter.type == ParameterType::COLOR)
             text += fmt::format(", {} {:g} {:g} {:g}", parameter.xml_name, number(parameter.word),
                                 number(parameter.word + 1), number(parameter.word + 2));
@@ -82,9 +89,13 @@ std::string bsdf_text(const Bsdf &bsdf) {
             text += fmt::format(", {} {:g}", parameter.xml_name, number(parameter.word));
         else if (parameter.type == ParameterType::FLAG && bsdf.words[parameter.word] != 0)
             text += ", " + parameter.xml_name;
+        if (const auto found = bsdf.textures.find(parameter.texture_word); found != bsdf.textures.end())
+            text += " times " + std::visit([](const auto &texture) { return texture_text(texture); }, found->second);
+    }
+    std::vector<std::string> children;
     for (const Bsdf &child : bsdf.children)
-        text += " " + bsdf_text(child);
-    return text;
+        children.push_back(bsdf_text(child));
+    return children.empty() ? text : fmt::format("{} ({})", text, fmt::join(children, "; "));
 }
 
 std::string shape_text(const Mesh &mesh) {
