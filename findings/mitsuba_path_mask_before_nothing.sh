@@ -3,9 +3,9 @@
 #
 # Guess before the run: `path`, `direct` and `volpath` have the same mean, as they estimate the same light: that of a
 # masked floor under a point light, with nothing else in the scene. Seen: at opacity 0.5 `path` has half the light of
-# the two others, at 0.25 a quarter. The integrator gathers the point light at the mask, then draws whether the path passes
-# on. If it does, and then leaves the scene, what was gathered is lost. A black wall behind the floor, or a constant sky
-# of radiance 0, brings the light back.
+# the two others, at 0.25 a quarter. The integrator gathers the point light at the mask, then draws whether the path
+# passes on. If it does, and then leaves the scene, what was gathered is lost. A black wall behind the floor, or a
+# constant sky of radiance 0, brings the light back.
 # What helps: a `<emitter type="constant">` of radiance 0 in such a scene, or `volpath`.
 set -eu
 folder=$(mktemp -d)
