@@ -426,7 +426,7 @@ TEST_CASE_METHOD(LoadFixture, "what a scene must and may hold", "[load]") {
             ":3:1: unknown integrator type 'photonmapper'; available: normals, ao, simple, whitted, direct_lighting, "
             "path_tracer_recursive, path_mats, path_ems, path_mis"));
     CHECK_THAT(error_in(camera + "\n<mesh type='stl'/>"),
-               Catch::Equals(":3:1: unknown mesh type 'stl'; available: obj, ply, parallelogram"));
+               Catch::Equals(":3:1: unknown mesh type 'stl'; available: obj, ply, parallelogram, sphere"));
     auto root_error = [&](const std::string &text) {
         return shortened(error_of([&] { load_scene(scratch.write("a.xml", text)); }));
     };
