@@ -70,11 +70,16 @@ std::string parameters_text(Light light) {
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::string texture_text(const CheckerboardTexture &texture) {
+std::string text_of(const CheckerboardTexture &texture) {
     return fmt::format("a checkerboard of {} and {}", color_text(texture.color0), color_text(texture.color1));
 }
-std::string texture_text(const BitmapTexture &texture) {
+std::string text_of(const BitmapTexture &texture) {
     return fmt::format("a bitmap of {} x {} pixels", texture.picture->width, texture.picture->height);
+}
+
+// " times a bitmap of 64 x 64 pixels"
+std::string factor_text(const Texture &texture) {
+    return " times " + std::visit([](const auto &own) { return text_of(own); }, texture);
 }
 
 // "diffuse, albedo 0.5 0.5 0.5"; a BSDF that leads to others is followed by them: "twosided (mirror)"
@@ -90,7 +95,7 @@ std::string bsdf_text(const Bsdf &bsdf) {
         else if (parameter.type == ParameterType::FLAG && bsdf.words[parameter.word] != 0)
             text += ", " + parameter.xml_name;
         if (const auto found = bsdf.textures.find(parameter.texture_word); found != bsdf.textures.end())
-            text += " times " + std::visit([](const auto &texture) { return texture_text(texture); }, found->second);
+            text += factor_text(found->second);
     }
     std::vector<std::string> children;
     for (const Bsdf &child : bsdf.children)
@@ -157,7 +162,8 @@ void print_scene(const SceneDescription &scene, const FlatScene &flat) {
     row("bsdfs", "{} ({} different)", counts_text(bsdfs), different.size());
     row("emitters", "{}{}", counts_text(emitters), scene.hides_emitters ? ", hidden from the camera" : "");
     for (const Light &light : scene.lights)
-        row("", "{}: {}", emitter_name(light.kind()), parameters_text(light));
+        row("", "{}: {}{}", emitter_name(light.kind()), parameters_text(light),
+            light.texture ? factor_text(light.texture->texture) : "");
     row("meshes", "{}, {} triangles", scene.meshes.size(), flat.triangles.size());
     print_meshes(scene.meshes);
 }
