@@ -1,4 +1,4 @@
-// The textures: a row and a record here, one file textures/NAME.cl and one file host/flatten/texture_NAME.cpp each.
+// The textures: a row and a record here, a file textures/NAME.cl, and functions in host/flatten/textures.cpp each.
 #ifndef OPAL_TEXTURE_LIST_H
 #define OPAL_TEXTURE_LIST_H
 

@@ -304,9 +304,11 @@ Object::Value Document::read_value(const XmlNode &node) {
     const bool has_parts = (tag == "point" || tag == "vector") && !node.has_attribute("value");
     if (has_parts)
         require({"name", "x", "y", "z"});
-    else if (tag == "spectrum" && node.has_attribute("filename"))
-        node.fail("spectra in files are not read; value=\"400:0.1, 500:0.3\" gives wavelengths in nm and values");
-    else
+    else if (tag == "spectrum" && node.has_attribute("filename")) {
+        context_.unknown(node, "spectra in files are not read; value=\"400:0.1, 500:0.3\" gives wavelengths in nm and "
+                               "values");
+        throw NoObject{};
+    } else
         require({"name", "value"});
     node.require_empty();
     if (tag == "point" || tag == "vector")

@@ -27,6 +27,10 @@ void Importer::count_use(const Object &object, const std::string &becomes) {
 }
 
 void Importer::count_unknown(Object &object, const std::vector<std::string> &known, const std::string &instead) {
+    if (object.type().empty()) { // told before, as its $name lacks a value
+        object.ignore_all();
+        return;
+    }
     if (counted_.contains(&object))
         return;
     if (!context_.lenient)

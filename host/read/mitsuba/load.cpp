@@ -141,7 +141,6 @@ SceneDescription load_scene(const std::filesystem::path &file, const LoadOptions
     if (document.root->tag() != "scene")
         document.root->mistake(
             fmt::format("the root is a <{}>; a scene's is <scene version=\"3.0.0\">", document.root->tag()));
-    mistakes.throw_all(); // a name without a value would be told twice
     Importer importer(context);
     SceneDescription scene = parse_scene(importer, *document.root, options);
     mistakes.throw_all();
