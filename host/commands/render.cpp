@@ -399,8 +399,8 @@ Command render_command() {
         .options = append(
             append({{.flags = "SCENE.xml",
                      .target = &o->scenes,
-                     .help = "The scene, in Nori's format; several need -o FOLDER/, and one that fails does not stop "
-                             "the others",
+                     .help = "The scene, in the format of Nori or of Mitsuba; several need -o FOLDER/, and one that "
+                             "fails does not stop the others",
                      .type = "",
                      .required = true,
                      .many_words = true}},
