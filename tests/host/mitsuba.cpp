@@ -482,6 +482,10 @@ TEST_CASE_METHOD(MitsubaFixture, "materials", "[mitsuba]") {
     const auto albedo = [](const Bsdf &made) { return made.as<bsdf_diffuse_record>().albedo; };
     CHECK(albedo(shape("sphere").bsdf).value[0] == 0.5f);
     CHECK(albedo(bsdf("diffuse")).value[0] == 0.5f);
+    const std::string lamp = "<emitter type='area'/>"; // which is black in Mitsuba if no material is given
+    CHECK(albedo(shape("sphere", lamp).bsdf).value[0] == 0);
+    CHECK(albedo(shape("sphere", lamp + "<bsdf type='diffuse'/>").bsdf).value[0] == 0.5f);
+    CHECK(scene_notes(load("<shape type='sphere'>" + lamp + "</shape>"), true).empty());
     CHECK(albedo(bsdf("diffuse", "<rgb name='reflectance' value='0.1, 0.2, 0.3'/>")).value[2] == 0.3f);
     CHECK(albedo(bsdf("diffuse", "<spectrum name='reflectance' value='1'/>")).value[1] == 1.f);
 
@@ -838,6 +842,8 @@ TEST_CASE("the format is told by the version and the tags", "[mitsuba]") {
         "<scene{}><camera type='perspective'/><mesh type='parallelogram'><point name='origin' "
         "value='0 0 0'/><vector name='u' value='1 0 0'/><vector name='v' value='0 1 0'/></mesh></scene>";
     CHECK(load("<scene version='3.0.0'><shape type='sphere'/></scene>").dialect == Dialect::mitsuba);
+    CHECK(load("<scene version='3.0.0'><!-- no <camera> and no <mesh> --><shape type='sphere'/></scene>").dialect ==
+          Dialect::mitsuba);
     CHECK(load("<scene version='0.6.0'><shape type='sphere'><transform name='toWorld'><scale value='2'/></transform>"
                "</shape></scene>")
               .meshes.size() == 1);
