@@ -37,7 +37,7 @@ static TexelPair texels_at(real x, uints size, uints wrap, mask nearest) {
 
 typedef struct {
     uints width, channels, first, decode;
-    mask bytes; // its values are bytes
+    mask bytes, floats; // the active lanes whose values are bytes, or floats
 } Bitmap;
 
 static v3 bitmap_texel(const Scene *scene, Bitmap b, uints x, uints y) {
@@ -52,10 +52,9 @@ static v3 bitmap_texel(const Scene *scene, Bitmap b, uints x, uints y) {
             uints byte = GATHER_WORD(uints, bytes, uints_pick(b.bytes, at[c], (uints)(0)));
             value[c] = GATHER_WORD(real, floats, uints_pick(b.bytes, b.decode + byte, (uints)(0)));
         }
-        mask is_float = !b.bytes;
-        if (ANY(is_float)) {
-            real read = GATHER_WORD(real, floats, uints_pick(is_float, at[c], (uints)(0)));
-            value[c] = is_float ? read : value[c];
+        if (ANY(b.floats)) {
+            real read = GATHER_WORD(real, floats, uints_pick(b.floats, at[c], (uints)(0)));
+            value[c] = b.floats ? read : value[c];
         }
     }
     return v3_of(value[0], value[1], value[2]);
@@ -65,7 +64,7 @@ static v3 mixed(v3 a, v3 b, real share) { // a + share (b - a) would lose a dim 
     return v3_mad(b, share, v3_scale(a, 1 - share));
 }
 
-static v3 texture_bitmap_color(const Scene *scene, uints at, v2 uv) {
+static v3 texture_bitmap_color(const Scene *scene, uints at, v2 uv, mask active) {
     global const texture_bitmap_record *record = (global const texture_bitmap_record *)scene->textures;
     uv = texture_uv(record->to_uv, at, uv);
     uints wrap = GATHER_WORD(uints, &record->wrap, at);
@@ -75,7 +74,8 @@ static v3 texture_bitmap_color(const Scene *scene, uints at, v2 uv) {
     b.channels = GATHER_WORD(uints, &record->channels, at);
     b.first = GATHER_WORD(uints, &record->first, at);
     b.decode = GATHER_WORD(uints, &record->decode, at);
-    b.bytes = to_mask(b.decode != OPAL_NONE);
+    b.bytes = active & to_mask(b.decode != OPAL_NONE);
+    b.floats = active & to_mask(b.decode == OPAL_NONE);
     TexelPair x = texels_at(uv.x, b.width, wrap, nearest);
     TexelPair y = texels_at(uv.y, GATHER_WORD(uints, &record->height, at), wrap, nearest);
     v3 top = mixed(bitmap_texel(scene, b, x.texel[0], y.texel[0]), bitmap_texel(scene, b, x.texel[1], y.texel[0]),

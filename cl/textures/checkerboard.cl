@@ -10,7 +10,7 @@
 // Is the coordinate in the first half of its period? The end of that half is.
 static mask in_first_half(real x) { return x - floor(x) <= R(0.5); }
 
-static v3 texture_checkerboard_color(const Scene *scene, uints at, v2 uv) {
+static v3 texture_checkerboard_color(const Scene *scene, uints at, v2 uv, mask active) {
     global const texture_checkerboard_record *record = (global const texture_checkerboard_record *)scene->textures;
     uv = texture_uv(record->to_uv, at, uv);
     mask first = in_first_half(uv.x) == in_first_half(uv.y);

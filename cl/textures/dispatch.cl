@@ -14,7 +14,7 @@ static v3 texture_color(const Scene *scene, uints at, v2 uv, mask active) {
     uints kind = GATHER_WORD(uints, scene->textures, at);
 #define TEXTURE_COLOR(name) { \
         mask m = textured & to_mask(kind == TEXTURE_##name); \
-        if (ANY(m)) factor = v3_pick(m, texture_##name##_color(scene, at, uv), factor); \
+        if (ANY(m)) factor = v3_pick(m, texture_##name##_color(scene, at, uv, m), factor); \
     }
     OPAL_TEXTURES(TEXTURE_COLOR)
     return factor;

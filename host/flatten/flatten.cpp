@@ -92,6 +92,9 @@ std::vector<uint> words_with_hemisphere(const Bsdf &bsdf, int hemisphere) {
     return words_of(record);
 }
 
+#define OPAL_TEXTURE_SIZE(name) sizeof(texture_##name##_record),
+constexpr std::size_t longest_texture_record = std::max({OPAL_TEXTURES(OPAL_TEXTURE_SIZE)});
+
 class BsdfGatherer {
 public:
     BsdfGatherer(int hemisphere, TextureGatherer &textures, LargeVector<uint> &table)
@@ -197,6 +200,8 @@ FlatScene flatten(const SceneDescription &description, int lanes, bool with_face
     build_acceleration(soup, light_points(description, flattening, soup, scene.triangles),
                        with_face_list && lanes >= FACE_LIST_LANES, description.strategy.is_general(), scene);
     gather_emitters(description, flattening, extent.radius(), soup, textures, scene);
+    if (!scene.textures.empty()) // as of BSDFs
+        scene.textures.resize(scene.textures.size() + longest_texture_record / sizeof(uint));
     scene.features = find_features(description, scene, lanes);
     return scene;
 }

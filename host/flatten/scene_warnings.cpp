@@ -18,6 +18,11 @@ std::string plural(size_t count, const char *one, const char *many) {
     return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
+// The name of a property in the scene's file.
+const char *name_in(const SceneDescription &scene, const char *nori, const char *mitsuba) {
+    return scene.dialect == Dialect::mitsuba ? mitsuba : nori;
+}
+
 // --- the camera ---
 
 struct Depths {
@@ -56,15 +61,17 @@ void check_clip(const SceneDescription &scene, const std::vector<Extent> &extent
             first = &mesh;
     }
     const std::string place = camera.place.text();
+    const char *const near = name_in(scene, "nearClip", "near_clip");
+    const char *const far = name_in(scene, "farClip", "far_clip");
     if (unseen == count && unseen > 0)
         lines.push_back(fmt::format(
-            "{}: the camera sees no mesh: it sees depths from nearClip {:g} to farClip {:g}, and {} at depths from "
+            "{}: the camera sees no mesh: it sees depths from {} {:g} to {} {:g}, and {} at depths from "
             "{:.3g} to {:.3g}{}",
-            place, camera.near_clip, camera.far_clip, unseen == 1 ? "the only mesh lies" : "all meshes lie", all.least,
-            all.most, all.most < 0 ? ", behind it" : ""));
+            place, near, camera.near_clip, far, camera.far_clip, unseen == 1 ? "the only mesh lies" : "all meshes lie",
+            all.least, all.most, all.most < 0 ? ", behind it" : ""));
     else if (beyond > 0)
-        lines.push_back(fmt::format("{}: the camera does not see {} beyond farClip {:g} (the first: {} at {})", place,
-                                    plural(beyond, "mesh", "meshes"), camera.far_clip, first->name,
+        lines.push_back(fmt::format("{}: the camera does not see {} beyond {} {:g} (the first: {} at {})", place,
+                                    plural(beyond, "mesh", "meshes"), far, camera.far_clip, first->name,
                                     first->place.text()));
 }
 
@@ -215,9 +222,9 @@ void check_spots(const SceneDescription &scene, const std::vector<Extent> &exten
             if (std::ranges::all_of(extents, [&](const Extent &mesh) { return misses(*spot, mesh); }) && ++count == 1)
                 first = &light;
     if (count > 0)
-        lines.push_back(
-            fmt::format("{}: {}: no mesh lies within cutoffAngle of the axis", first->place.text(),
-                        count == 1 ? "a spot lights nothing" : fmt::format("{} spots light nothing", count)));
+        lines.push_back(fmt::format("{}: {}: no mesh lies within {} of the axis", first->place.text(),
+                                    count == 1 ? "a spot lights nothing" : fmt::format("{} spots light nothing", count),
+                                    name_in(scene, "cutoffAngle", "cutoff_angle")));
 }
 
 // --- coincident faces ---
@@ -371,7 +378,7 @@ std::vector<std::string> scene_notes(const SceneDescription &scene, bool samples
     std::vector<std::string> lines;
     if (!samples_given && !scene.sample_count_given)
         lines.push_back(fmt::format("{}: no {}: {} a pixel", scene.sampler_place.text(),
-                                    scene.dialect == Dialect::mitsuba ? "sample_count" : "sampleCount",
+                                    name_in(scene, "sampleCount", "sample_count"),
                                     plural(scene.spp, "sample", "samples")));
     size_t bare = 0;
     const Mesh *first = nullptr;

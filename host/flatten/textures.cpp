@@ -1,6 +1,7 @@
 #include "flatten/textures.h"
 
 #include "base/error.h"
+#include "base/srgb.h"
 #include "flatten/store.h"
 #include "scene/parameters.h"
 #include "shared/types.h"
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -20,9 +20,6 @@ void store_map(const UvTransform &map, float (&words)[2][3]) {
         for (int column = 0; column < 3; column++)
             words[row][column] = float(map[row][column]);
 }
-
-// The linear value of a number that sRGB encodes (IEC 61966-2-1).
-double srgb_decode(double x) { return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4); }
 
 constexpr uint byte_values = 256;
 

@@ -5,6 +5,7 @@
 #include "base/large_vector.h"
 #include "base/log.h"
 #include "base/read_file.h"
+#include "base/srgb.h"
 #include "image/deflate.h"
 
 #include <ImfChannelList.h>
@@ -122,16 +123,15 @@ int picture_part(const Imf::MultiPartInputFile &file) {
 
 // Makes R, G, B of the channels X, Y, Z: CIE XYZ with white D65, linear sRGB (IEC 61966-2-1).
 void to_linear_srgb(Image &image) {
-    constexpr double matrix[3][3] = {
-        {3.240479, -1.537150, -0.498535}, {-0.969256, 1.875991, 0.041556}, {0.055648, -0.204043, 1.057311}};
-    std::array<Layer, 3> xyz = {image.get("X"), image.get("Y"), image.get("Z")};
+    std::array<Layer, 3> layers = {image.get("X"), image.get("Y"), image.get("Z")};
     std::erase_if(image.layers, [](const Layer &l) { return l.name == "X" || l.name == "Y" || l.name == "Z"; });
-    for (size_t c = 0; c < channel_names.size(); c++) {
-        Layer &layer = image.layers.emplace_back(Layer{channel_names[c], std::vector<float>(xyz[0].values.size())});
-        for (size_t i = 0; i < layer.values.size(); i++)
-            for (size_t k = 0; k < xyz.size(); k++)
-                layer.values[i] += float(matrix[c][k] * double(xyz[k].values[i]));
+    for (size_t i = 0; i < layers[0].values.size(); i++) {
+        const Color rgb = linear_rgb_of_xyz(layers[0].values[i], layers[1].values[i], layers[2].values[i]);
+        for (size_t c = 0; c < rgb.size(); c++)
+            layers[c].values[i] = float(rgb[c]);
     }
+    for (size_t c = 0; c < channel_names.size(); c++)
+        image.layers.push_back({channel_names[c], std::move(layers[c].values)});
 }
 
 // Gives the picture's channels the names R, G, B, where it has others.

@@ -1,5 +1,7 @@
 #include "plot/canvas.h"
 
+#include "base/srgb.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -7,8 +9,6 @@
 namespace opal {
 
 namespace {
-
-double srgb_decode(double shown) { return shown <= 0.04045 ? shown / 12.92 : std::pow((shown + 0.055) / 1.055, 2.4); }
 
 // 3 x 5 dots: five octal digits, a row each, the highest bit left.
 struct Glyph {

@@ -127,6 +127,15 @@ std::string_view xml_root(std::string_view text) {
     }
 }
 
+std::string without_comments(std::string_view text) {
+    std::string result;
+    for (size_t at = text.find("<!--"); at != text.npos; at = text.find("<!--")) {
+        result += text.substr(0, at);
+        text.remove_prefix(std::min(text.find("-->", at), text.size()));
+    }
+    return result.append(text);
+}
+
 // A version of three numbers in the tag: version="3.0.0".
 bool has_long_version(std::string_view tag) {
     const size_t at = tag.find("version");
@@ -165,7 +174,7 @@ FileKindRow kind_of_xml(std::string_view text) {
         std::find_if(root.begin() + 1, root.end(), [](char c) { return is_blank(c) || c == '>' || c == '/'; });
     const std::string_view tag(root.data() + 1, size_t(name_end - root.begin()) - 1);
     const std::string_view root_tag = root.substr(0, root.find('>'));
-    if (tag == "scene" ? is_mitsuba(root)
+    if (tag == "scene" ? is_mitsuba(without_comments(root))
                        : std::ranges::find(mitsuba_roots, tag) != std::end(mitsuba_roots) && has_long_version(root_tag))
         return {FileKind::mitsuba_scene, "a scene of Mitsuba", "render it: opal FILE"};
     if (tag == "scene" || tag == "test")

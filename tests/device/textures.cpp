@@ -1,4 +1,6 @@
 // Textures on the parameters of BSDFs. Some tests add a kind of texture to the sources.
+#include "scene/examples.h"
+#include "support/pictures.h"
 #include "support/probe.h"
 #include "textures/list.h"
 
@@ -22,7 +24,7 @@ Sources with_constant_texture() {
     REQUIRE(list.find(none) != std::string::npos);
     list.replace(list.find(none), none.size(), none + " TEXTURE(constant)");
     sources.files["textures/constant.cl"] =
-        "static v3 texture_constant_color(const Scene *scene, uints at, v2 uv) {\n"
+        "static v3 texture_constant_color(const Scene *scene, uints at, v2 uv, mask active) {\n"
         "    global const float *color = (global const float *)scene->textures + 1;\n"
         "    return v3_of(GATHER_WORD(real, color, at), GATHER_WORD(real, (color + 1), at),\n"
         "                 GATHER_WORD(real, (color + 2), at));\n"
@@ -191,5 +193,37 @@ TEST_CASE("Bytes of a bitmap are decoded from sRGB unless it is raw", "[textures
     for (unsigned i = 0; i < materials.size(); i++) {
         const Planes f = probe.bsdf_eval(i, {0, 0, 1}, std::vector{Vec3{0, 0, 1}});
         CHECK(f.at(EVAL_B, 0) * std::numbers::pi == Approx(i < 3 ? decoded[i] : raw[i - 3]).margin(1e-6));
+    }
+}
+
+TEST_CASE("Lanes beside each other may have textures of other kinds", "[textures]") {
+    const auto picture = std::make_shared<Picture>();
+    picture->width = picture->height = 3;
+    picture->channels = 3;
+    picture->bytes.assign(27, 51); // a fifth
+    const auto textured = [](Texture texture) {
+        Bsdf material = bsdf_diffuse_record{.albedo = 1};
+        material.textures[bsdf_parameters(BSDF_diffuse)[0].texture_word] = std::move(texture);
+        return material;
+    };
+    SceneDescription scene;
+    scene.camera = examples::camera({0, 0, 5}, {0, 0, 0}, 20);
+    scene.camera.width = scene.camera.height = 16;
+    const Bsdf squares = textured(CheckerboardTexture{{0.6, 0.6, 0.6}, {0.6, 0.6, 0.6}});
+    const Bsdf bitmap = textured(BitmapTexture{.picture = picture});
+    constexpr int count = 64; // stripes narrower than a pixel, one kind beside the other
+    constexpr double width = 4.0 / count;
+    scene.lights = {{emitter_constant{.radiance = {1, 1, 1}}, {}}};
+    const Overrides exact = {{"integrator", "direct_lighting"}, {"lighting", "bsdf"}, {"hemisphere", "cosine"}};
+    for (const bool bitmap_is_last : {true, false}) { // in the table, at whose end records of one kind are shorter
+        scene.meshes.clear();
+        for (int i = 0; i < count; i++)
+            scene.meshes.push_back(examples::made_of(Parallelogram{{i * width - 2, -2, 0}, {width, 0, 0}, {0, 4, 0}},
+                                                     (i % 2 == 0) == bitmap_is_last ? squares : bitmap));
+        for (int lanes : tested_lanes()) {
+            INFO(lanes << " lanes");
+            const Film film = render(with_strategy(scene, exact), 64, 1, {.lanes = lanes});
+            CHECK(sample_of(film, 0).mean == Approx((0.6 + 0.2) / 2).margin(0.01)); // 6 standard deviations
+        }
     }
 }

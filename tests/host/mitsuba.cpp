@@ -2,6 +2,7 @@
 #include "base/log.h"
 #include "base/table.h"
 #include "commands/options.h"
+#include "flatten/scene_warnings.h"
 #include "image/image.h"
 #include "read/load.h"
 #include "scene/options.h"
@@ -397,6 +398,7 @@ TEST_CASE_METHOD(MitsubaFixture, "integrators: the strategy of path, and what fi
         CHECK(s.rr_depth == 5);
         CHECK(s.max_depth == no_limit);
         CHECK_FALSE(scene.hides_emitters);
+        CHECK(scene.lights_reflect);
         CHECK(scene.wants_variance == (body.find("moment") != body.npos));
         CHECK(integrator_name(scene) == "path");
     }
@@ -429,6 +431,15 @@ TEST_CASE_METHOD(MitsubaFixture, "volpath would find a point light through a mas
     CHECK(warnings_of(point + plain + volpath).empty());
     CHECK(warnings_of(lit + mask + volpath).empty());
     CHECK(warnings_of(point + mask + "<integrator type='path'/>").empty());
+
+    const auto limited = [](const std::string &type) {
+        return "\n<integrator type='" + type + "'>\n<integer name='max_depth' value='6'/></integrator>";
+    };
+    const std::vector<std::string> depth = warnings_of(lit + mask + limited("volpath"));
+    REQUIRE(depth.size() == 1);
+    CHECK_THAT(depth[0], Catch::StartsWith(":4:1: Mitsuba's volpath does not count mask and null as segments"));
+    CHECK(warnings_of(lit + plain + limited("volpath")).empty());
+    CHECK(warnings_of(lit + mask + limited("path")).empty());
 }
 
 TEST_CASE_METHOD(MitsubaFixture, "direct has samples of both kinds, or of one", "[mitsuba]") {
@@ -455,6 +466,7 @@ TEST_CASE_METHOD(MitsubaFixture, "direct has samples of both kinds, or of one", 
         CHECK(s.emitter_samples == row.emitter);
         CHECK(s.bsdf_samples == row.bsdf);
     }
+    CHECK(load("<integrator type='direct'/>").lights_reflect); // beside what they emit
 }
 
 TEST_CASE_METHOD(MitsubaFixture, "aov: its inner integrator renders, and its channels are named", "[mitsuba]") {
@@ -470,6 +482,10 @@ TEST_CASE_METHOD(MitsubaFixture, "materials", "[mitsuba]") {
     const auto albedo = [](const Bsdf &made) { return made.as<bsdf_diffuse_record>().albedo; };
     CHECK(albedo(shape("sphere").bsdf).value[0] == 0.5f);
     CHECK(albedo(bsdf("diffuse")).value[0] == 0.5f);
+    const std::string lamp = "<emitter type='area'/>"; // which is black in Mitsuba if no material is given
+    CHECK(albedo(shape("sphere", lamp).bsdf).value[0] == 0);
+    CHECK(albedo(shape("sphere", lamp + "<bsdf type='diffuse'/>").bsdf).value[0] == 0.5f);
+    CHECK(scene_notes(load("<shape type='sphere'>" + lamp + "</shape>"), true).empty());
     CHECK(albedo(bsdf("diffuse", "<rgb name='reflectance' value='0.1, 0.2, 0.3'/>")).value[2] == 0.3f);
     CHECK(albedo(bsdf("diffuse", "<spectrum name='reflectance' value='1'/>")).value[1] == 1.f);
 
@@ -660,6 +676,12 @@ TEST_CASE_METHOD(MitsubaFixture, "plug-ins that Opal does not have are all named
         ":8:29: unknown sensor type 'batch'; available: perspective, thinlens, orthographic\n"
         ":9:28: unknown film type 'specfilm'; available: hdrfilm\n"
         ":9:51: unknown sampler type 'halton'; available: independent, stratified, multijitter, orthogonal, ldsampler");
+    // Those within others, too.
+    CHECK_THAT(error_in("<bsdf type='plastic'>\n<texture name='diffuse_reflectance' type='wood'/></bsdf>\n"
+                        "<sensor type='batch'>\n<film type='specfilm'/>\n<sampler type='halton'/></sensor>"),
+               Catch::Contains("\n:3:1: unknown texture type 'wood'") &&
+                   Catch::Contains("\n:5:1: unknown film type 'specfilm'") &&
+                   Catch::Contains("\n:6:1: unknown sampler type 'halton'"));
 }
 
 TEST_CASE_METHOD(MitsubaFixture, "lenient: what stands in for a plug-in is said", "[mitsuba]") {
@@ -793,6 +815,24 @@ TEST_CASE_METHOD(MitsubaFixture, "without a sensor or an integrator there are de
           std::vector<std::string>{":1:1: the scene has no <emitter>; it renders black"});
 }
 
+TEST_CASE_METHOD(MitsubaFixture, "warnings about a scene have the names of its file", "[mitsuba]") {
+    const std::string far = transform("<translate z='20000'/>");
+    const auto warned = [&](const std::string &body) {
+        const std::vector<std::string> lines = scene_warnings(load(body));
+        REQUIRE(lines.size() == 1);
+        return lines[0];
+    };
+    CHECK_THAT(warned(lit + "<shape type='sphere'>" + far + "</shape>"),
+               Catch::Contains("it sees depths from near_clip 0.01 to far_clip 10000, and the only mesh lies at"));
+    CHECK_THAT(warned(lit + "<shape type='cube'/><shape type='sphere'>" + far + "</shape>"),
+               Catch::Contains("does not see 1 mesh beyond far_clip 10000"));
+    CHECK_THAT(warned("<shape type='cube'>" + transform("<translate z='-9'/>") +
+                      "</shape><emitter type='spot'/>"
+                      "<sensor type='perspective'>" +
+                      transform("<rotate y='1' angle='180'/>") + "</sensor>"),
+               Catch::EndsWith("a spot lights nothing: no mesh lies within cutoff_angle of the axis"));
+}
+
 TEST_CASE("the format is told by the version and the tags", "[mitsuba]") {
     const test::ScratchFolder scratch;
     const auto load = [&](const std::string &text, const LoadOptions &options = {}) {
@@ -802,6 +842,8 @@ TEST_CASE("the format is told by the version and the tags", "[mitsuba]") {
         "<scene{}><camera type='perspective'/><mesh type='parallelogram'><point name='origin' "
         "value='0 0 0'/><vector name='u' value='1 0 0'/><vector name='v' value='0 1 0'/></mesh></scene>";
     CHECK(load("<scene version='3.0.0'><shape type='sphere'/></scene>").dialect == Dialect::mitsuba);
+    CHECK(load("<scene version='3.0.0'><!-- no <camera> and no <mesh> --><shape type='sphere'/></scene>").dialect ==
+          Dialect::mitsuba);
     CHECK(load("<scene version='0.6.0'><shape type='sphere'><transform name='toWorld'><scale value='2'/></transform>"
                "</shape></scene>")
               .meshes.size() == 1);

@@ -33,9 +33,12 @@ void Importer::count_unknown(Object &object, const std::vector<std::string> &kno
     }
     if (counted_.contains(&object))
         return;
-    if (!context_.lenient)
-        for (const auto &child : object.children("bsdf")) // so that all that is unknown is told in one run
+    if (!context_.lenient) { // so that all that is unknown is told in one run
+        for (const auto &child : object.children("bsdf"))
             bsdf(*child);
+        for (const auto &child : object.children("texture"))
+            texture(*child);
+    }
     object.ignore_all();
     if (context_.lenient)
         count_use(object, instead);

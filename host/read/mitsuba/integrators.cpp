@@ -84,6 +84,7 @@ void set_default_strategy(SceneDescription &scene) {
     constexpr double most_survival = 0.95; // of Mitsuba's roulette
     constexpr unsigned first_roulette = 5;
     scene.integrator_type = "path";
+    scene.lights_reflect = true; // under `direct`, too
     Strategy &strategy = scene.strategy;
     strategy[AXIS_integrator] = CHOICE_integrator_path;
     strategy[AXIS_lighting] = CHOICE_lighting_mis;

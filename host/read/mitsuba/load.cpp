@@ -82,14 +82,21 @@ void warn_if_black(const SceneDescription &scene) {
         warn(scene.place.text() + ": the scene has no <emitter>; it renders black");
 }
 
-// Under volpath, shadow rays pass surfaces that let light through without turning it. Under path they do not.
-void warn_of_volpath(const SceneDescription &scene) {
+// Under volpath, shadow rays pass surfaces that let light through without turning it, and these are no segment of a
+// path. Under path they block shadow rays, and are one.
+void warn_of_volpath(Object &root, const SceneDescription &scene) {
     const auto is_volpath = [](const PluginUse &use) { return use.type.starts_with("volpath"); };
     const auto lets_through = [](const Mesh &mesh) {
         return mesh.bsdf.leads_to(BSDF_mask) || mesh.bsdf.leads_to(BSDF_null);
     };
-    const Light *light = light_missed_by_bsdfs(scene);
-    if (light && std::ranges::any_of(scene.plugins, is_volpath) && std::ranges::any_of(scene.meshes, lets_through))
+    if (std::ranges::none_of(scene.plugins, is_volpath) || std::ranges::none_of(scene.meshes, lets_through))
+        return;
+    if (const unsigned depth = scene.strategy.max_depth; depth != no_limit)
+        warn(
+            fmt::format("{}: Mitsuba's volpath does not count mask and null as segments of a path; Opal counts them as "
+                        "its path does, so that max_depth {} ends paths earlier",
+                        root.children("integrator").front()->place_of("max_depth").text(), depth));
+    if (const Light *light = light_missed_by_bsdfs(scene))
         warn(fmt::format("{}: Mitsuba's volpath finds this light through mask and null; Opal renders as its path does, "
                          "where they throw full shadows",
                          light->place.text()));
@@ -150,7 +157,7 @@ SceneDescription load_scene(const std::filesystem::path &file, const LoadOptions
     scene.plugins = importer.uses();
     tell_choices(*document.root, options, scene);
     warn_if_black(scene);
-    warn_of_volpath(scene);
+    warn_of_volpath(*document.root, scene);
     return scene;
 }
 

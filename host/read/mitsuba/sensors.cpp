@@ -129,9 +129,13 @@ Sensor parse_sensor(Importer &importer, Object &object) {
     sensor.id = object.id();
     sensor.sampler_place = object.place();
     const auto *type = importer.row_of_type(object, sensor_types, "a perspective one stands in for it");
+    Camera &camera = sensor.camera;
+    if (const auto film = only_child(object, "film"))
+        context.attempt(*film, [&] { parse_film(importer, *film, camera); });
+    if (const auto sampler = only_child(object, "sampler"))
+        context.attempt(*sampler, [&] { parse_sampler(importer, *sampler, sensor); });
     if (!type)
         return sensor;
-    Camera &camera = sensor.camera;
     camera.place = object.place();
     camera.to_world = object.transform("to_world").value_or(Transform());
     camera.near_clip = object.number("near_clip").value_or(camera.near_clip);
@@ -140,10 +144,6 @@ Sensor parse_sensor(Importer &importer, Object &object) {
     object.check(camera.far_clip > camera.near_clip, "far_clip", "must be larger than near_clip");
     for (const char *name : {"shutter_open", "shutter_close"}) // nothing moves
         object.ignore(name);
-    if (const auto film = only_child(object, "film"))
-        context.attempt(*film, [&] { parse_film(importer, *film, camera); });
-    if (const auto sampler = only_child(object, "sampler"))
-        context.attempt(*sampler, [&] { parse_sampler(importer, *sampler, sensor); });
     for (const auto &medium : object.children("medium"))
         importer.refuse(*medium, "it is left out");
     type->parse(object, camera);

@@ -128,9 +128,14 @@ void parse_shape(Importer &importer, Object &object, SceneDescription &scene) {
     const Transform to_world = object.transform("to_world").value_or(Transform());
     const bool flip_normals = object.boolean("flip_normals").value_or(false);
     object.ignore("silhouette_sampling_weight"); // of differentiable rendering
-    if (const auto bsdf = only_child(object, "bsdf"))
+    const auto bsdf = only_child(object, "bsdf"), emitter = only_child(object, "emitter");
+    if (bsdf) {
         mesh.bsdf = importer.bsdf(*bsdf);
-    if (const auto emitter = only_child(object, "emitter"))
+    } else if (emitter) { // a lamp reflects nothing
+        mesh.bsdf = bsdf_diffuse_record{.albedo = 0};
+        mesh.bsdf.place = mesh.place;
+    }
+    if (emitter)
         importer.context().attempt(*emitter, [&] { parse_area_emitter(importer, *emitter, mesh); });
     for (const char *tag : {"medium", "sensor"})
         for (const auto &child : object.children(tag))

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/printable.h"
+#include "base/srgb.h"
 #include "base/values.h"
 
 #include <fmt/format.h>
@@ -149,12 +150,6 @@ const std::vector<CieRow> &cie_samples() {
     return samples;
 }
 
-// From XYZ to linear sRGB with the white point D65 (ITU-R BT.709).
-Color from_xyz(double x, double y, double z) {
-    return {3.240479 * x - 1.537150 * y - 0.498535 * z, -0.969256 * x + 1.875991 * y + 0.041556 * z,
-            0.055648 * x - 0.204043 * y + 1.057311 * z};
-}
-
 // The colour of the spectrum value(row, wavelength).
 template <class Value> Color sum(Value value) {
     double x = 0, y = 0, z = 0;
@@ -165,12 +160,7 @@ template <class Value> Color sum(Value value) {
         y += s * row.y;
         z += s * row.z;
     }
-    return from_xyz(x, y, z);
-}
-
-// The inverse of IEC 61966-2-1.
-double srgb_decode(double encoded) {
-    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+    return linear_rgb_of_xyz(x, y, z);
 }
 
 Color parse_hex(std::string_view text) {
@@ -227,7 +217,7 @@ Color parse_rgb(std::string_view text, bool encoded) {
 Color to_rgb(const Spectrum &spectrum, SpectrumUse use) {
     if (spectrum.wavelengths.empty()) {
         const double value = spectrum.values.at(0);
-        return use == SpectrumUse::radiance ? from_xyz(value, value, value) : Color{value, value, value};
+        return use == SpectrumUse::radiance ? linear_rgb_of_xyz(value, value, value) : Color{value, value, value};
     }
     const std::vector<double> &at = spectrum.wavelengths, &values = spectrum.values;
     size_t next = 1; // the point that ends the piece
