@@ -24,7 +24,8 @@ static v2 square_to_concentric_disk(v2 u) {
     real x = 2 * u.x - 1, y = 2 * u.y - 1;
     mask wide = fabs(x) > fabs(y); // in the two sectors around the x axis
     real r = wide ? x : y, other = wide ? y : x;
-    v2 cs = cos_sin_2pi(R(0.125) * other / (r == 0 ? (real)(1) : r)); // |angle| of at most pi / 4 from the sector's axis
+    // An angle of at most pi / 4 to either side of the sector's axis.
+    v2 cs = cos_sin_2pi(R(0.125) * other / (r == 0 ? (real)(1) : r));
     return v2_of(r * (wide ? cs.x : cs.y), r * (wide ? cs.y : cs.x));
 }
 static real square_to_concentric_disk_pdf(v2 p) { return square_to_uniform_disk_pdf(p); }

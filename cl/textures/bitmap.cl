@@ -24,7 +24,8 @@ typedef struct {
 
 static TexelPair texels_at(real x, uints size, uints wrap, mask nearest) {
     mask repeats = to_mask(wrap == (uint)WRAP_repeat), mirrors = to_mask(wrap == (uint)WRAP_mirror);
-    real within = repeats ? x - floor(x) : mirrors ? x - 2 * floor(x / 2) : real_min(real_max(x, (real)(-1)), (real)(2));
+    real clamped = real_min(real_max(x, (real)(-1)), (real)(2));
+    real within = repeats ? x - floor(x) : mirrors ? x - 2 * floor(x / 2) : clamped;
     within = (within >= -1 & within <= 2) ? within : (real)(0); // of NaN and infinity
     real position = within * to_real(size) - (nearest ? (real)(0) : (real)(R(0.5)));
     real below = floor(position);

@@ -9,7 +9,8 @@
 
 // Three words of the records that begin at word `at`; `member` is that of the table's first record.
 static v3 texture_words(global const float *member, uints at) {
-    return v3_of(GATHER_WORD(real, member, at), GATHER_WORD(real, (member + 1), at), GATHER_WORD(real, (member + 2), at));
+    return v3_of(GATHER_WORD(real, member, at), GATHER_WORD(real, (member + 1), at),
+                 GATHER_WORD(real, (member + 2), at));
 }
 
 // The textures' own coordinates. to_uv: the member of the table's first record

@@ -70,11 +70,23 @@ std::string parameters_text(Light light) {
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-// "diffuse, albedo 0.5 0.5 0.5"; a BSDF that leads to others is followed by them
+std::string text_of(const CheckerboardTexture &texture) {
+    return fmt::format("a checkerboard of {} and {}", color_text(texture.color0), color_text(texture.color1));
+}
+std::string text_of(const BitmapTexture &texture) {
+    return fmt::format("a bitmap of {} x {} pixels", texture.picture->width, texture.picture->height);
+}
+
+// " times a bitmap of 64 x 64 pixels"
+std::string factor_text(const Texture &texture) {
+    return " times " + std::visit([](const auto &own) { return text_of(own); }, texture);
+}
+
+// "diffuse, albedo 0.5 0.5 0.5"; a BSDF that leads to others is followed by them: "twosided (mirror)"
 std::string bsdf_text(const Bsdf &bsdf) {
     std::string text = bsdf_name(bsdf.kind());
     const auto number = [&](size_t word) { return std::bit_cast<float>(bsdf.words[word]); };
-    for (const Parameter &parameter : bsdf_parameters(bsdf.kind()))
+    for (const Parameter &parameter : bsdf_parameters(bsdf.kind())) {
         if (parameter.type == ParameterType::COLOR)
             text += fmt::format(", {} {:g} {:g} {:g}", parameter.xml_name, number(parameter.word),
                                 number(parameter.word + 1), number(parameter.word + 2));
@@ -82,9 +94,13 @@ std::string bsdf_text(const Bsdf &bsdf) {
             text += fmt::format(", {} {:g}", parameter.xml_name, number(parameter.word));
         else if (parameter.type == ParameterType::FLAG && bsdf.words[parameter.word] != 0)
             text += ", " + parameter.xml_name;
+        if (const auto found = bsdf.textures.find(parameter.texture_word); found != bsdf.textures.end())
+            text += factor_text(found->second);
+    }
+    std::vector<std::string> children;
     for (const Bsdf &child : bsdf.children)
-        text += " " + bsdf_text(child);
-    return text;
+        children.push_back(bsdf_text(child));
+    return children.empty() ? text : fmt::format("{} ({})", text, fmt::join(children, "; "));
 }
 
 std::string shape_text(const Mesh &mesh) {
@@ -146,7 +162,8 @@ void print_scene(const SceneDescription &scene, const FlatScene &flat) {
     row("bsdfs", "{} ({} different)", counts_text(bsdfs), different.size());
     row("emitters", "{}{}", counts_text(emitters), scene.hides_emitters ? ", hidden from the camera" : "");
     for (const Light &light : scene.lights)
-        row("", "{}: {}", emitter_name(light.kind()), parameters_text(light));
+        row("", "{}: {}{}", emitter_name(light.kind()), parameters_text(light),
+            light.texture ? factor_text(light.texture->texture) : "");
     row("meshes", "{}, {} triangles", scene.meshes.size(), flat.triangles.size());
     print_meshes(scene.meshes);
 }

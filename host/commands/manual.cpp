@@ -50,12 +50,12 @@ std::string command_text(const Command &command, const std::string &path) {
 }
 
 std::string man_page(const std::vector<Command> &commands) {
-    std::string text =
-        ".TH OPAL 1 \"\" \"opal " OPAL_VERSION "\" \"User commands\"\n"
-        ".SH NAME\nopal \\- a portable, physically based path tracer in OpenCL\n"
-        ".SH SYNOPSIS\n.B opal\nCOMMAND [OPTIONS]\n.br\n.B opal\nSCENE.xml [OPTIONS]\n"
-        ".SH DESCRIPTION\nOpal renders scenes in the format of Nori on any OpenCL device, and measures how "
-        "right and how fast that is. `opal SCENE.xml` is `opal render SCENE.xml`.\n.SH COMMANDS\n";
+    std::string text = ".TH OPAL 1 \"\" \"opal " OPAL_VERSION "\" \"User commands\"\n"
+                       ".SH NAME\nopal \\- a portable, physically based path tracer in OpenCL\n"
+                       ".SH SYNOPSIS\n.B opal\nCOMMAND [OPTIONS]\n.br\n.B opal\nSCENE.xml [OPTIONS]\n"
+                       ".SH DESCRIPTION\nOpal renders scenes in the format of Nori or of Mitsuba on any OpenCL "
+                       "device, and measures how right and how fast that is. `opal SCENE.xml` is `opal render "
+                       "SCENE.xml`.\n.SH COMMANDS\n";
     for_each_command(commands, "",
                      [&](const Command &command, const std::string &path) { text += command_text(command, path); });
     text += ".SH STRATEGY\nThe strategy of a render: what the scene's XML says, unless the command line says other. "

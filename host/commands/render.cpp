@@ -426,7 +426,7 @@ Command render_command() {
               .check = OneOf<std::string>{{"srgb", "aces"}}},
              {.flags = "--spp",
               .target = &o->spp,
-              .help = "Samples per pixel [the scene's sampleCount]",
+              .help = "Samples per pixel [the scene's]",
               .check = Range{1u, 0xffffffffu}},
              {.flags = "--time",
               .target = &o->time,

@@ -143,9 +143,7 @@ Planes KernelProbe::light_sample(Vec3 from, const Planes &numbers) {
     return light_sample(std::vector<Vec3>(numbers.count, from), numbers);
 }
 
-Planes KernelProbe::camera_rays(const Planes &film) {
-    return run("camera_rays", true, RAY_PLANES, film, upload(film));
-}
+Planes KernelProbe::camera_rays(const Planes &film) { return run("camera_rays", true, RAY_PLANES, film, upload(film)); }
 
 Planes KernelProbe::trace(const Planes &rays) { return run("trace", true, HIT_PLANES, rays, upload(rays)); }
 

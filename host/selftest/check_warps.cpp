@@ -28,18 +28,11 @@ double invalid_at_corners(KernelProbe &probe, const WarpCase &c) {
 } // namespace
 
 const std::vector<WarpCase> &selftest_warps() {
-    static const std::vector<WarpCase> cases = {{WARP_tent, 0},
-                                                {WARP_uniform_disk, 0},
-                                                {WARP_concentric_disk, 0},
-                                                {WARP_uniform_sphere, 0},
-                                                {WARP_uniform_hemisphere, 0},
-                                                {WARP_cosine_hemisphere, 0},
-                                                {WARP_beckmann, 0.05f},
-                                                {WARP_beckmann, 0.3f},
-                                                {WARP_beckmann, 1},
-                                                {WARP_phong_lobe, 0},
-                                                {WARP_phong_lobe, 20},
-                                                {WARP_phong_lobe, 1000}};
+    static const std::vector<WarpCase> cases = {
+        {WARP_tent, 0},           {WARP_uniform_disk, 0},       {WARP_concentric_disk, 0},
+        {WARP_uniform_sphere, 0}, {WARP_uniform_hemisphere, 0}, {WARP_cosine_hemisphere, 0},
+        {WARP_beckmann, 0.05f},   {WARP_beckmann, 0.3f},        {WARP_beckmann, 1},
+        {WARP_phong_lobe, 0},     {WARP_phong_lobe, 20},        {WARP_phong_lobe, 1000}};
     return cases;
 }
 

@@ -2,6 +2,7 @@
 
   mitsuba_worker.py VARIANT SCENE.xml RR_DEPTH [WIDTH HEIGHT]
 
+RR_DEPTH is none for a file of Mitsuba's own, which is rendered as it is; one of Nori's is translated.
 Says one JSON line when the scene is loaded, {width, height, version, box_filter}, then answers each line `SPP SEED` on its input with
 one: wall and cpu (user + system of all threads) seconds of that render, until its pixels are there; mean_luminance of that
 image and pixel_stderr, the standard error of that mean by the variance of each pixel between the renders of equal SPP so far
@@ -41,6 +42,17 @@ def timed_render(mi, dr, scene, spp, seed):
     return image, time.perf_counter() - wall, time.process_time() - cpu
 
 
+def load_own(mi, path, size):
+    """A file of Mitsuba's, with another size of the film."""
+    scene = mi.load_file(path)
+    if size:
+        params = mi.traverse(scene.sensors()[0])
+        params["film.size"] = size
+        params["film.crop_size"] = size
+        params.update()
+    return scene
+
+
 def main():
     variant, path, rr_depth = sys.argv[1:4]
     size = tuple(int(a) for a in sys.argv[4:6]) or None
@@ -48,7 +60,7 @@ def main():
     import mitsuba as mi
     import numpy as np
     mi.set_variant(variant)
-    scene = nori_to_mitsuba.load(mi, path, rr_depth=int(rr_depth), size=size)
+    scene = load_own(mi, path, size) if rr_depth == "none" else nori_to_mitsuba.load(mi, path, rr_depth=int(rr_depth), size=size)
     film = scene.sensors()[0].film()
     width, height = film.size()
     say = lambda **answer: print(json.dumps(answer), flush=True)
@@ -58,7 +70,7 @@ def main():
     for line in sys.stdin:
         spp, seed = (int(t) for t in line.split())
         image, wall, cpu = timed_render(mi, dr, scene, spp, seed)
-        grey = np.array(image, dtype=np.float64) @ luminance
+        grey = np.array(image, dtype=np.float64)[..., :3] @ luminance  # further channels are those of moment and aov
         variance = of_spp.setdefault(spp, PixelVariance())
         variance.add(grey)
         say(wall=wall, cpu=cpu, mean_luminance=float(grey.mean()), pixel_stderr=variance.stderr())

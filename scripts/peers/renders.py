@@ -9,13 +9,20 @@ import resource
 import statistics
 import subprocess
 import tempfile
+from xml.etree import ElementTree
 
 from peers.report import PeerError, spread
 
-STRATEGY = ["--lighting", "mis", "--mis", "power", "--rr", "throughput-eta", "--specialise", "on"]  # one kernel for pilots and renders
+SPECIALISE = ["--specialise", "on"]  # one kernel for pilots and renders
+STRATEGY = ["--lighting", "mis", "--mis", "power", "--rr", "throughput-eta"]  # of Nori's scenes; Mitsuba's say theirs
 SIGMA = 4  # combined standard errors by which two mean luminances may differ
 HINTS = {"No module named": "; install it with `python3 -m venv V; V/bin/pip install mitsuba numpy` and name it with --python V/bin/python",
          "LLVM shared library": "; it is Debian's libllvm19, name it with --llvm, or leave it out with --variants scalar_rgb"}
+
+
+def is_mitsuba(scene):
+    """Is the file one of Mitsuba's? Their root has a version."""
+    return ElementTree.parse(scene).getroot().get("version") is not None
 
 
 def installed_llvm():
@@ -35,7 +42,7 @@ class Mitsuba:
         worker = os.path.join(os.path.dirname(__file__), "mitsuba_worker.py")
         size = [str(options.width), str(options.height)] if options.width else []
         self.log = tempfile.TemporaryFile("w+")
-        self.process = subprocess.Popen([options.python, worker, variant, scene, str(options.rr_depth), *size], env=env, text=True,
+        self.process = subprocess.Popen([options.python, worker, variant, scene, "none" if is_mitsuba(scene) else str(options.rr_depth), *size], env=env, text=True,
                                         stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.log)
         hello = self.answer()
         self.pixels, self.version, self.box_filter = hello["width"] * hello["height"], hello["version"], hello["box_filter"]
@@ -71,6 +78,7 @@ class Opal:
 
     def __init__(self, options, scene):
         self.options, self.scene = options, scene
+        self.strategy = SPECIALISE if is_mitsuba(scene) else [*SPECIALISE, *STRATEGY, "--rr-depth", str(options.rr_depth)]
         self.start_cpu = 0.0
         self.start_cpu = min(self.run(1, seed)[1] for seed in (1, 2))  # loading, and the driver's compiler until its cache is warm
 
@@ -79,7 +87,7 @@ class Opal:
         with tempfile.TemporaryDirectory() as folder:
             stats = os.path.join(folder, "stats.json")
             command = [self.options.opal, "render", self.scene, "-o", os.path.join(folder, "image.exr"), "--no-png", "--quiet", "--json", stats,
-                       "--spp", str(spp), "--seed", str(seed), "--rr-depth", str(self.options.rr_depth), *STRATEGY, *self.options.opal_args]
+                       "--spp", str(spp), "--seed", str(seed), *self.strategy, *self.options.opal_args]
             if self.options.width:
                 command += ["--width", str(self.options.width), "--height", str(self.options.height)]
             before = resource.getrusage(resource.RUSAGE_CHILDREN)

@@ -146,12 +146,12 @@ blurred. No ray meets these lights by chance, so that all light is found by ligh
                    translate(1.5 * math.sin(angle), 0.11, -1.5 * math.cos(angle) + 0.4))
     scene.mesh("vase", diffuse(0.7, 0.66, 0.6), scaling(1.1), translate(1.7, 0, -3.2))
     scene.mesh("vase", microfacet(0.1, (0.3, 0.1, 0.25)), scaling(0.9), translate(-1.5, 0, -3.6))
-    scene.spot((-2.2, 4.6, 3), middle, (95, 78, 52), 17, 9)
-    scene.spot((3.4, 3.8, 2.6), (1.25, 0.1, 1.6), (34, 42, 60), 14, 4)
-    scene.spot((-3, 4, 4.2), (-1.35, 0.5, 1.9), (38, 46, 44), 13, 6)
-    scene.spot((1.7, 5, -2.6), (1.7, 0.4, -3.2), (70, 46, 26), 15, 5)
-    scene.spot((-1.2, 5, -4.4), (-1.5, 0.5, -3.6), (24, 34, 70), 16, 6)
-    scene.sun((0.5, -1, -0.35), (0.1, 0.13, 0.2))
+    scene.spot((-2.2, 4.6, 3), middle, (150, 124, 84), 18, 10)
+    scene.spot((3.4, 3.8, 2.6), (1.25, 0.1, 1.6), (56, 70, 98), 15, 6)
+    scene.spot((-3, 4, 4.2), (-1.35, 0.5, 1.9), (70, 84, 80), 15, 8)
+    scene.spot((1.7, 5, -2.6), (1.7, 0.4, -3.2), (120, 80, 46), 16, 6)
+    scene.spot((-1.2, 5, -4.4), (-1.5, 0.5, -3.6), (60, 80, 150), 17, 8)
+    scene.sun((0.5, -1, -0.35), (0.28, 0.35, 0.5))
     return scene
 
 

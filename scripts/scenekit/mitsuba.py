@@ -44,9 +44,9 @@ SHAPES = """
     </integrator>
 
     <sensor type="perspective">
-        <float name="fov" value="38"/>
+        <float name="fov" value="41.5"/>
         <transform name="to_world">
-            <lookat origin="0.6, 3, 9" target="0, 0.85, 0" up="0, 1, 0"/>
+            <lookat origin="0.6, 3, 9.2" target="0.05, 0.85, 0" up="0, 1, 0"/>
         </transform>
         <film type="hdrfilm">
             <integer name="width" value="480"/>
@@ -203,7 +203,7 @@ SKY = """
     </sensor>
 
     <emitter type="constant">
-        <rgb name="radiance" value="0.82, 0.95, 1.1"/>
+        <rgb name="radiance" value="0.62, 0.83, 1.15"/>
     </emitter>
 
     <shape type="rectangle">
@@ -212,7 +212,7 @@ SKY = """
             <rotate x="1" angle="-90"/>
         </transform>
         <bsdf type="diffuse">
-            <rgb name="reflectance" value="0.34, 0.36, 0.3"/>
+            <rgb name="reflectance" value="0.55, 0.5, 0.4"/>
         </bsdf>
     </shape>
 
@@ -224,7 +224,7 @@ SKY = """
             <translate x="-0.35" y="1.58" z="-0.5"/>
         </transform>
         <bsdf type="diffuse">
-            <rgb name="reflectance" value="0.8, 0.78, 0.74"/>
+            <rgb name="reflectance" value="0.82, 0.5, 0.2"/>
         </bsdf>
     </shape>
 

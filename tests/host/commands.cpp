@@ -146,6 +146,21 @@ TEST_CASE("inspect tells what a scene holds and why each feature is in or out", 
                   "holds no .cl file", opal::exit_failed);
 }
 
+TEST_CASE("inspect tells the textures of materials and lights, and BSDFs within others", "[commands]") {
+    const ScratchFolder folder;
+    const std::string scene = folder.write("scene.xml", R"(<scene version="3.0.0">
+  <shape type="rectangle"><bsdf type="mask"><float name="opacity" value="0.25"/>
+    <bsdf type="twosided">
+      <bsdf type="diffuse"><texture name="reflectance" type="checkerboard"/></bsdf><bsdf type="conductor"/>
+    </bsdf></bsdf></shape>
+  <emitter type="spot"><texture name="texture" type="checkerboard"/></emitter></scene>)");
+    const Outcome outcome = run_shell(opal_binary + " inspect " + scene);
+    INFO(outcome.err);
+    CHECK_THAT(outcome.out, Catch::Contains("mask, opacity 0.25 (twosided (diffuse, albedo 1 1 1 times a checkerboard "
+                                            "of 0.4 0.4 0.4 and 0.2 0.2 0.2; mirror))\n") &&
+                                Catch::Contains("smooth false times a checkerboard of 0.4 0.4 0.4 and 0.2 0.2 0.2\n"));
+}
+
 TEST_CASE("The command line is kept as a shell would take it", "[commands]") {
     const char *const words[] = {"opal", "render", "a b.xml", "--json=x", "it's", ""};
     opal::set_command_line(6, words);

@@ -171,9 +171,8 @@ TEST_CASE_METHOD(MistakesFixture, "lenient: unknown types get something in their
               "unknown sampler type 'halton'", "independent stands in for it");
     CHECK(halton.spp == 9);
     CHECK(halton.strategy[AXIS_sampler] == CHOICE_sampler_independent);
-    CHECK(check("<camera type='thinlens'><float name='fov' value='50'/><float name='lensRadius' value='1'/></camera>" +
-                    light,
-                "unknown camera type 'thinlens'", "a perspective one stands in for it")
+    CHECK(check("<camera type='fisheye'><float name='fov' value='50'/></camera>" + light,
+                "unknown camera type 'fisheye'", "a perspective one stands in for it")
               .camera.perspective.fov == 50);
     CHECK(check("<camera type='perspective'><rfilter type='sinc'/></camera>" + light, "unknown rfilter type 'sinc'",
                 "the default filter stands in for it")

@@ -44,13 +44,23 @@ EmitterParameters parse_spot(Importer &importer, Object &object) {
     const double beam = object.number("beam_width").value_or(0.75 * cutoff);
     object.check(cutoff > 0 && cutoff <= 180, "cutoff_angle", "must be above 0 and at most 180 degrees");
     object.check(beam >= 0 && beam <= 180, "beam_width", "must be from 0 to 180 degrees");
-    if (object.has("texture"))
-        importer.lacks(object, "texture", "Opal has no textured spot yet", "its whole beam has one colour");
     return emitter_spot{.position = to_world.point({}),
                         .direction = to_world.vector({0, 0, 1}),
                         .intensity = intensity,
                         .cutoff_angle = cutoff,
                         .beam_width = beam};
+}
+
+// The texture of a spot, which lies across its axis.
+std::optional<LightTexture> parse_light_texture(Importer &importer, Object &object) {
+    const auto child = object.child_named("texture");
+    if (!child)
+        return std::nullopt;
+    const auto texture = parse_texture(importer, *child);
+    if (!texture)
+        return std::nullopt;
+    const Transform to_world = object.transform("to_world").value_or(Transform());
+    return LightTexture{*texture, normalize(to_world.vector({1, 0, 0})), normalize(to_world.vector({0, 1, 0}))};
 }
 
 EmitterParameters parse_directional(Importer &importer, Object &object) {
@@ -106,6 +116,8 @@ void parse_area_emitter(Importer &importer, Object &object, Mesh &mesh) {
 Light parse_scene_emitter(Importer &importer, Object &object) {
     const auto &type = type_in(importer, object, "scene");
     Light light{type.parse(importer, object), object.place()};
+    if (light.kind() == EMITTER_spot)
+        light.texture = parse_light_texture(importer, object);
     object.finish();
     return light;
 }

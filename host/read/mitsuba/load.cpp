@@ -65,7 +65,7 @@ void tell_choices(Object &root, const LoadOptions &options, const SceneDescripti
         info(fmt::format("no <sensor>: a camera at the origin that looks along +z, {} x {} pixels, {} samples",
                          scene.camera.width, scene.camera.height, scene.spp));
     else if (sensors > 1 && options.sensor.empty())
-        info(fmt::format("the first of {} sensors; --sensor takes another one", sensors));
+        info(fmt::format("the camera is the first of {} sensors; --sensor takes another one", sensors));
     if (root.children("integrator").empty())
         info("no <integrator>: path, as Mitsuba's is without any property");
     for (const PluginUse &use : scene.plugins)
