@@ -43,7 +43,10 @@ static LightSample emitter_spot_sample(const Scene *scene, uints id, v3 color, R
     real share = (smooth ? lowered : cutoff - angle) * GATHER(real, scene->emitters, id, .u.of_spot.inverse_transition);
     share = real_min(real_max(share, (real)(0)), (real)(1));
     real falloff = smooth ? square(square(share)) : share;
-    if (OPAL_HAS_light_textures) color = v3_mul(color, spot_texture(scene, id, v3_neg(d), axis, falloff > 0));
+    if (OPAL_HAS_light_textures) { // records of other kinds hold no texture
+        mask lit = falloff > 0 & to_mask(GATHER(uints, scene->emitters, id, .kind) == EMITTER_spot);
+        color = v3_mul(color, spot_texture(scene, id, v3_neg(d), axis, lit));
+    }
     return light_sample_of(d, distance2 * inverse_distance, v3_scale(color, falloff * square(inverse_distance)),
                            (real)(1), p, inverse_distance < FAR & falloff > 0);
 }
