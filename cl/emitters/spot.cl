@@ -44,7 +44,7 @@ static LightSample emitter_spot_sample(const Scene *scene, uints id, v3 color, R
     share = real_min(real_max(share, (real)(0)), (real)(1));
     real falloff = smooth ? square(square(share)) : share;
     if (OPAL_HAS_light_textures) { // records of other kinds hold no texture
-        mask lit = falloff > 0 & to_mask(GATHER(uints, scene->emitters, id, .kind) == EMITTER_spot);
+        mask lit = (falloff > 0) & to_mask(GATHER(uints, scene->emitters, id, .kind) == EMITTER_spot);
         color = v3_mul(color, spot_texture(scene, id, v3_neg(d), axis, lit));
     }
     return light_sample_of(d, distance2 * inverse_distance, v3_scale(color, falloff * square(inverse_distance)),
