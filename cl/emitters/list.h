@@ -101,7 +101,6 @@ typedef struct {
     float cutoff_angle;       // radians
     float inverse_transition; // 1 / (cutoff_angle - beam width); if smooth, 2 / (cosine of the beam - of the cutoff)
     uint smooth;              // 1: it falls as in pbrt, 0: in proportion to the angle
-    uint texture;             // first word of the texture that multiplies the intensity, or OPAL_UNTEXTURED
     float across[2][3];       // the texture's axes: unit vectors across the direction, over 2 tan cutoff_angle
 } emitter_spot_record;
 
@@ -119,6 +118,7 @@ typedef struct {
     float accept;         // alias table: keep this row if a uniform number is below, else take row `other`
     uint other;
     uint two_sided;       // of a mesh: 1, it emits on both sides
+    uint texture;         // of a spot: first word of what multiplies its colour, or OPAL_UNTEXTURED. Others: the latter
     uint first, count;    // its rows of a table; of a mesh, of the light triangles. Others: 0, 0
     union {
         float color[3];   // with which every record begins

@@ -54,7 +54,6 @@ emitter_spot_record flattened(const emitter_spot &light, const Flattening &flatt
     record.cutoff_angle = float(cone.cutoff);
     record.inverse_transition = float(std::min(1 / transition, steepest));
     record.smooth = light.smooth;
-    record.texture = OPAL_UNTEXTURED;
     return record;
 }
 

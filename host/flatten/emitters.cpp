@@ -93,6 +93,7 @@ private:
         const bool uniform = description_.strategy[AXIS_triangle_choice] == CHOICE_triangle_choice_uniform;
         const EmittingMesh from{mesh, flattening_, begin, end, soup_, slots_, uniform};
         EmitterRecord record{};
+        record.texture = OPAL_UNTEXTURED;
         record.kind = kind_of(mesh.shape);
         record.two_sided = mesh.emits_on_both_sides;
         double area = 0;
@@ -111,6 +112,7 @@ private:
             scene_.settings.environment = uint(scene_.emitters.size());
         }
         EmitterRecord record{};
+        record.texture = OPAL_UNTEXTURED;
         record.kind = light.kind();
 #define OPAL_STORE_EMITTER(name, traits)                                                                               \
     if (const auto *own = std::get_if<emitter_##name>(&light.parameters))                                              \
@@ -118,17 +120,17 @@ private:
         OPAL_SCENE_EMITTERS(OPAL_STORE_EMITTER)
         double power = power_of(light, radius_);
         if (light.texture) {
-            add_texture(*light.texture, std::get<emitter_spot>(light.parameters), record.u.of_spot);
+            add_texture(*light.texture, std::get<emitter_spot>(light.parameters), record);
             power *= mean_luminance(light.texture->texture);
         }
         add(record, power * flattening_.scale * flattening_.scale);
     }
 
-    void add_texture(const LightTexture &own, const emitter_spot &light, emitter_spot_record &record) {
+    void add_texture(const LightTexture &own, const emitter_spot &light, EmitterRecord &record) {
         const double factor = 1 / (2 * std::tan(light.cutoff_angle * (pi / 180)));
         record.texture = textures_.add(own.texture);
-        store(own.x * factor, record.across[0]);
-        store(own.y * factor, record.across[1]);
+        store(own.x * factor, record.u.of_spot.across[0]);
+        store(own.y * factor, record.u.of_spot.across[1]);
     }
 
     void fill_emitter_choice() {

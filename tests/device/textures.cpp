@@ -10,6 +10,7 @@
 #include <bit>
 #include <memory>
 #include <numbers>
+#include <random>
 
 using namespace opal;
 using namespace opal::test;
@@ -226,4 +227,27 @@ TEST_CASE("Lanes beside each other may have textures of other kinds", "[textures
             CHECK(sample_of(film, 0).mean == Approx((0.6 + 0.2) / 2).margin(0.01)); // 6 standard deviations
         }
     }
+}
+
+TEST_CASE("A textured spot among other lights is the only one whose texture is read", "[textures]") {
+    const auto picture = std::make_shared<Picture>();
+    picture->width = picture->height = 3;
+    picture->channels = 3;
+    picture->bytes.assign(27, 51);
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    SceneDescription scene;
+    scene.camera = examples::camera({0, 2, -5}, {0, 0, 0}, 60);
+    scene.camera.width = scene.camera.height = 16;
+    scene.lights = {{emitter_spot{{0, 2, -3}, {0, -2, 3}, {9, 9, 9}, 60, 45, false},
+                     {},
+                     LightTexture{BitmapTexture{.picture = picture}, {1, 0, 0}, normalize({0, 3, 2})}}};
+    scene.meshes = {examples::made_of(Parallelogram{{-4, -1, -4}, {0, 0, 8}, {8, 0, 0}}, examples::diffuse(0.5))};
+    const auto any = [&] { return Vec3{uniform(random), uniform(random), uniform(random)}; };
+    for (int i = 0; i < 40; i++)
+        scene.meshes.push_back(examples::light(Parallelogram{any() * 3 + Vec3{0, 3, 0}, any(), any()}, 1));
+    scene = with_strategy(scene, {{"integrator", "path_mis"}, {"emitter-choice", "uniform"}});
+    const double one = sample_of(render(scene, 16, 1, {.lanes = 1})).mean;
+    for (int lanes : tested_lanes())
+        CHECK(sample_of(render(scene, 16, 1, {.lanes = lanes})).mean == Approx(one).epsilon(1e-3));
 }

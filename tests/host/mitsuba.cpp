@@ -598,6 +598,8 @@ TEST_CASE_METHOD(MitsubaFixture, "what Opal cannot render is an error with its p
         {in_light("spot", transform("<scale z='2'/>")), ":3:1: property 'to_world': a spot light must be scaled alike"},
         {in_light("spot", "<texture name='texture' type='wood'/>"), ":3:1: unknown texture type 'wood'"},
         {in_light("point", "<texture name='texture' type='checkerboard'/>"), ":3:1: "},
+        {in_light("spot", "<float name='cutoff_angle' value='90'/><texture name='texture' type='checkerboard'/>"),
+         ":3:1: property 'cutoff_angle': must be below 90 degrees"},
         {in_bsdf("conductor", "<float name='eta' value='1'/><float name='k' value='2'/>"),
          ":3:1: property 'eta': Opal"},
         {in_light("spot", "<float name='cutoff_angle' value='0'/>"), ":3:1: property 'cutoff_angle': must be above 0"},

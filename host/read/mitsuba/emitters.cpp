@@ -116,8 +116,11 @@ void parse_area_emitter(Importer &importer, Object &object, Mesh &mesh) {
 Light parse_scene_emitter(Importer &importer, Object &object) {
     const auto &type = type_in(importer, object, "scene");
     Light light{type.parse(importer, object), object.place()};
-    if (light.kind() == EMITTER_spot)
+    if (const auto *spot = std::get_if<emitter_spot>(&light.parameters)) {
         light.texture = parse_light_texture(importer, object);
+        object.check(!light.texture || spot->cutoff_angle < 90, "cutoff_angle",
+                     "must be below 90 degrees where the spot has a texture, which lies on a plane across its axis");
+    }
     object.finish();
     return light;
 }
