@@ -1,6 +1,7 @@
 #include "read/picture.h"
 
 #include "base/error.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "base/read_file.h"
 #include "image/image.h"
@@ -9,6 +10,7 @@
 #include <png.h>
 
 #include <algorithm>
+#include <cmath>
 #include <new>
 #include <stdexcept>
 
@@ -86,9 +88,15 @@ Picture decoded_exr(const std::filesystem::path &file, FileHashes *hashes) {
     const Layer *const channels[] = {&image.get("R"), &image.get("G"), &image.get("B")};
     const std::size_t pixels = std::size_t(image.width) * std::size_t(image.height);
     picture.floats.resize(3 * pixels);
+    std::size_t invalid = 0;
     for (std::size_t i = 0; i < pixels; i++)
-        for (std::size_t c = 0; c < 3; c++)
-            picture.floats[3 * i + c] = channels[c]->values[i];
+        for (std::size_t c = 0; c < 3; c++) {
+            const float value = channels[c]->values[i];
+            invalid += !std::isfinite(value);
+            picture.floats[3 * i + c] = std::isfinite(value) ? value : 0;
+        }
+    if (invalid > 0)
+        warn(fmt::format("{}: {} values are NaN or infinite: they are taken as 0", file.string(), invalid));
     return picture;
 }
 

@@ -27,6 +27,11 @@ void check_numbers(const Strategy &strategy) {
         refuse("rr-prob " + std::to_string(strategy.rr_prob), "a probability to survive is above 0 and at most 1");
     if (!(strategy.rr_max > 0 && strategy.rr_max <= 1))
         refuse(fmt::format("rr-max {}", strategy.rr_max), "a probability to survive is above 0 and at most 1");
+    constexpr unsigned most_samples = 65536; // of a path: it ends after them, however long a user waits
+    for (const auto &[name, samples] :
+         {std::pair("emitter-samples", strategy.emitter_samples), std::pair("bsdf-samples", strategy.bsdf_samples)})
+        if (samples > most_samples)
+            refuse(fmt::format("{} {}", name, samples), fmt::format("a path takes at most {}", most_samples));
     if (strategy.max_depth < 1)
         refuse("max-depth 0", "the shortest path has one segment and shows the lights");
 }

@@ -271,6 +271,11 @@ TEST_CASE_METHOD(MitsubaFixture, "cameras", "[mitsuba]") {
 
     const Camera parallel = sensor("orthographic", transform("<scale x='3' y='3'/>")).camera;
     CHECK(parallel.kind == CAMERA_orthographic);
+    const Camera deep = sensor("orthographic", transform("<scale z='2'/>") + "<float name='near_clip' value='2'/>"
+                                                                             "<float name='far_clip' value='3.2'/>")
+                            .camera; // as Mitsuba: from depth 4 to 5.2 in the scene
+    CHECK(deep.near_clip == 2);
+    CHECK(deep.far_clip == Approx(2.6));
     CHECK(near(parallel.to_world.vector({1, 0, 0}), {3, 0, 0}));
     CHECK(error_in("<sensor type='perspective'>" + transform("<scale value='1.0001'/>") + "</sensor>").empty());
     CHECK(error_in("<sensor type='perspective'>" + mirrored + "</sensor>").empty());
@@ -416,6 +421,9 @@ TEST_CASE_METHOD(MitsubaFixture, "integrators: the strategy of path, and what fi
     CHECK(integrator("path", depths(8, 3)).rr_depth == 3);
     CHECK(integrator("path", depths(-1, 3)).max_depth == no_limit);
     CHECK(load("<integrator type='path'><boolean name='hide_emitters' value='true'/></integrator>").hides_emitters);
+    CHECK_FALSE(load("<integrator type='moment'><boolean name='hide_emitters' value='true'/>"
+                     "<integrator type='path'/></integrator>")
+                    .hides_emitters);
     CHECK(load("<integrator type='moment'><integrator type='direct'><boolean name='hide_emitters' value='true'/>"
                "</integrator></integrator>")
               .hides_emitters);
@@ -513,6 +521,8 @@ TEST_CASE_METHOD(MitsubaFixture, "materials", "[mitsuba]") {
     const Bsdf mask = bsdf("mask", inner);
     REQUIRE(mask.is<bsdf_mask_record>());
     CHECK(mask.as<bsdf_mask_record>().opacity.value == 0.5f);
+    CHECK(bsdf("mask", inner + "<rgb name='opacity' value='0.9, 0.3, 0'/>").as<bsdf_mask_record>().opacity.value ==
+          Approx(0.4)); // the mean, as Mitsuba has it: its luminance would be 0.41
     CHECK(albedo(mask.children.at(0)).value[0] == 0.25f);
     CHECK(bsdf("mask", inner + "<float name='opacity' value='0.2'/>").as<bsdf_mask_record>().opacity.value == 0.2f);
 }

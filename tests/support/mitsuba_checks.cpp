@@ -40,8 +40,8 @@ Camera tall() {
 }
 Camera shifted() {
     Camera camera = perspective(40);
-    camera.perspective.principal_point_x = 0.1;
-    camera.perspective.principal_point_y = 0.2;
+    camera.perspective.principal_point_x = -0.1; // Mitsuba's offset is 0.1: that of the film
+    camera.perspective.principal_point_y = -0.2;
     return camera;
 }
 Camera moved() {

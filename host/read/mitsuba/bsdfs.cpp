@@ -18,15 +18,15 @@ void require_white(Importer &importer, Object &object, const char *name) {
         importer.lacks(object, name, "Opal has only 1 here yet", "1 stands in for it");
 }
 
-// Sets a parameter of the material to that property: a texture, or a constant, as luminance where it is one number. It
-// keeps its default if the property is not given.
+// Sets a parameter of the material to that property: a texture, or a constant, of which the channels' mean is taken
+// where it is one number. It keeps its default if the property is not given.
 void set_parameter(Importer &importer, Object &object, const std::string &property, Bsdf &bsdf,
                    const std::string &name) {
     const Parameter &parameter = find_row(bsdf_parameters(bsdf.kind()), "parameter", name);
     const auto set = [&](const Color &color) {
         const auto put = [&](size_t i, double x) { bsdf.words[parameter.word + i] = std::bit_cast<uint>(float(x)); };
         if (parameter.type == ParameterType::NUMBER)
-            return put(0, luminance(color));
+            return put(0, (color[0] + color[1] + color[2]) / 3);
         for (size_t i = 0; i < color.size(); i++)
             put(i, color[i]);
     };

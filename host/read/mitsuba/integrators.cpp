@@ -100,8 +100,8 @@ void parse_integrator(Importer &importer, Object &object, SceneDescription &scen
     const auto *type = importer.row_of_type(object, integrator_types, "path stands in for it");
     if (!type)
         return;
-    scene.hides_emitters |= object.boolean("hide_emitters").value_or(false);
-    for (const char *name : {"block_size", "samples_per_pass"}) // how work is shared out
+    scene.hides_emitters = object.boolean("hide_emitters").value_or(false); // the inner one's is read last, and counts
+    for (const char *name : {"block_size", "samples_per_pass"})             // how work is shared out
         object.ignore(name);
     if (object.number("timeout").value_or(0) > 0)
         note(fmt::format("{}: timeout: Opal renders all samples; --time sets a limit",

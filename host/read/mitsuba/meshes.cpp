@@ -112,6 +112,10 @@ TriangleMesh finished_mesh(TriangleMesh mesh, const MeshOptions &options) {
         for (auto &[u, v] : mesh.uvs)
             v = 1 - v;
     if (options.flip_normals) {
+        if (mesh.uv_corners.empty()) { // the barycentric ones of the corners before they change places
+            mesh.uvs = {{0, 0}, {1, 0}, {0, 1}};
+            mesh.uv_corners.assign(mesh.triangles.size(), {0, 1, 2});
+        }
         reverse_winding(mesh);
         for (Vec3 &normal : mesh.normals)
             normal = normal * -1;

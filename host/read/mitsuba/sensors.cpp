@@ -99,7 +99,12 @@ void parse_thinlens(Object &object, Camera &camera) {
     object.check(camera.thinlens.focus_distance > 0, "focus_distance", "must be above 0");
 }
 
-void parse_orthographic(Object &, Camera &camera) { camera.kind = CAMERA_orthographic; }
+// to_world scales the depth of the near plane, and not what lies between it and the far one.
+void parse_orthographic(Object &, Camera &camera) {
+    camera.kind = CAMERA_orthographic;
+    const double depth = length(camera.to_world.vector({0, 0, 1}));
+    camera.far_clip = camera.near_clip + (camera.far_clip - camera.near_clip) / depth;
+}
 
 const std::vector<Plugin<void (*)(Object &, Camera &)>> sensor_types = {
     {"perspective", "perspective", parse_perspective},
