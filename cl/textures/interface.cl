@@ -1,8 +1,8 @@
 // interface: what every texture offers (textures/NAME.cl for each row of textures/list.h).
 //   v3 texture_NAME_color(scene, at, uv, active)   linear RGB at the surface's coordinates `uv` of the textures whose
 //                                                  records begin at word `at`
-// Functions compute all lanes; their callers pick the active ones. The record of another lane may be of another kind: an
-// index that comes from it must not be followed.
+// Functions compute all lanes; their callers pick the active ones. The record of another lane may be of another kind:
+// an index that comes from it must not be followed.
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "scene.cl"

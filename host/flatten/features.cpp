@@ -128,9 +128,7 @@ public:
     }
 
     Decision light_textures() const {
-        const auto has = [](const EmitterRecord &emitter) {
-            return emitter.texture != OPAL_UNTEXTURED;
-        };
+        const auto has = [](const EmitterRecord &emitter) { return emitter.texture != OPAL_UNTEXTURED; };
         return counted(std::size_t(std::ranges::count_if(scene.emitters, has)), scene.emitters.size(), "emitter",
                        "emitters");
     }
