@@ -102,7 +102,8 @@ Findings check_filters(const Sources &sources, unsigned seed) {
 
         const double edge = middle + 0.3;
         const Film film = filtered(half_lit(edge), f.filter, spp, seed + 1, sources);
-        const double whole = integral(f.weight, -reach, reach);
+        const double radius = f.filter.radius; // beyond, a box would have a step within the sum of the integral
+        const double whole = integral(f.weight, -radius, radius);
         if (!film.weighted.empty()) // a pixel gets the weights of all samples around it
             findings.push_back(p_value(
                 f.name + ": the weights' sum",
@@ -116,8 +117,7 @@ Findings check_filters(const Sources &sources, unsigned seed) {
                               whole * whole)
                     .p_value));
         for (int x = middle - 3; x <= middle + 3; x++) {
-            const double lit_share =
-                integral(f.weight, -reach, std::clamp<double>(edge - (x + 0.5), -reach, reach)) / whole;
+            const double lit_share = integral(f.weight, -radius, std::clamp(edge - (x + 0.5), -radius, radius)) / whole;
             findings.push_back(
                 p_value(f.name + ": edge at column " + std::to_string(x),
                         stats::t_test(over_rows(film, [&](int y) { return value(film, x, y); }), lit_share).p_value));
