@@ -56,7 +56,7 @@ std::optional<LightTexture> parse_light_texture(Importer &importer, Object &obje
     const auto child = object.child_named("texture");
     if (!child)
         return std::nullopt;
-    const auto texture = parse_texture(importer, *child);
+    const std::optional<Texture> &texture = importer.texture(*child);
     if (!texture)
         return std::nullopt;
     const Transform to_world = object.transform("to_world").value_or(Transform());
