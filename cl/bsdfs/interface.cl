@@ -33,12 +33,35 @@
     }
 OPAL_ALL_BSDFS(BSDF_READER)
 
+// A leaf of a tree of blends (bsdfs/blendbsdf.cl): a BSDF that is none. The leaves have consecutive intervals of
+// [0, 1): each blend cuts its own one in two.
+typedef struct {
+    mask drawn;     // the leaf is found by `number`, else by `place`
+    real number;    // random, in [0, 1)
+    uints place;    // where its interval begins, in 2^-32, if the cuts are in the middle
+    uints blends;   // that lead to it: that interval's length is 2^-blends
+    real share;     // of the leaf in the tree
+    real low, high; // the numbers that find it, if the cuts are by the shares
+} BlendLeaf;
+
+static BlendLeaf blend_leaf(mask drawn, real number, uints place) {
+    BlendLeaf leaf = {drawn, number, place, (uints)(0), (real)(1), (real)(0), (real)(1)};
+    return leaf;
+}
+
+static BlendLeaf blend_leaf_pick(mask m, BlendLeaf yes, BlendLeaf no) {
+    BlendLeaf leaf = {no.drawn, no.number, uints_pick(m, yes.place, no.place), uints_pick(m, yes.blends, no.blends),
+                      m ? yes.share : no.share, m ? yes.low : no.low, m ? yes.high : no.high};
+    return leaf;
+}
+
 // A BSDF and how a surface asks it.
 typedef struct {
-    uints at;     // first word of its record
-    v3 wi;        // towards the viewer, in `frame`
-    Frame frame;  // around the shading normal
-    real opacity; // the probability that light meets the BSDF (bsdfs/mask.cl)
+    uints at;       // first word of its record
+    v3 wi;          // towards the viewer, in `frame`
+    Frame frame;    // around the shading normal
+    real opacity;   // the probability that light meets the BSDF (bsdfs/mask.cl)
+    BlendLeaf leaf; // of kernels with blends
 } BsdfOpening;
 
 static BsdfOpening bsdf_opening_pick(mask m, BsdfOpening yes, BsdfOpening no) {
@@ -46,7 +69,8 @@ static BsdfOpening bsdf_opening_pick(mask m, BsdfOpening yes, BsdfOpening no) {
                      v3_pick(m, yes.wi, no.wi),
                      {v3_pick(m, yes.frame.s, no.frame.s), v3_pick(m, yes.frame.t, no.frame.t),
                       v3_pick(m, yes.frame.n, no.frame.n)},
-                     m ? yes.opacity : no.opacity};
+                     m ? yes.opacity : no.opacity,
+                     blend_leaf_pick(m, yes.leaf, no.leaf)};
     return o;
 }
 

@@ -2,6 +2,7 @@
 #ifndef OPAL_BSDF_LIST_H
 #define OPAL_BSDF_LIST_H
 
+#include "bsdfs/blendbsdf.h"
 #include "bsdfs/dielectric.h"
 #include "bsdfs/diffuse.h"
 #include "bsdfs/mask.h"
@@ -34,7 +35,8 @@ enum {
 // come to them.
 #define OPAL_NESTING_BSDFS(BSDF) \
     BSDF(twosided, OPAL_HOLDS_OPAQUE) \
-    BSDF(mask, OPAL_DISCRETE | OPAL_TRANSMITS)
+    BSDF(mask, OPAL_DISCRETE | OPAL_TRANSMITS) \
+    BSDF(blendbsdf, 0)
 
 #define OPAL_ALL_BSDFS(BSDF) OPAL_BSDFS(BSDF) OPAL_NESTING_BSDFS(BSDF)
 

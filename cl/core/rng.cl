@@ -22,7 +22,8 @@
 #define DIM_LIGHT 2        // point on the light
 #define DIM_EMITTER 3      // which emitter: .x row, .y alias
 #define DIM_TRIANGLE 4     // which triangle: .x row, .y alias
-#define DIM_MET (ADDED_DIMENSION + 0) // .x whether light meets a masked surface; of kernels with masks
+#define DIM_MET (ADDED_DIMENSION + 0) // .x whether light meets a masked surface, .y which BSDF of a blend; of kernels
+                                      // with masks or blends
 #define DIMS_A_SEGMENT 5
 
 // The key of a dimension in a path's segment d, which counts from 1; 0: an added dimension of the camera. Keys are

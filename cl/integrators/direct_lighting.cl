@@ -23,14 +23,13 @@ static v3 light_by_samples(const Scene *scene, const Path *path, const Surface *
     v3 sum = v3_all((real)(0));
     if (!ANY(by_light)) return sum;
     Path drawing = *path;
-    BsdfNumbers none = {v2_of((real)(0), (real)(0)), (real)(0), (real)(0)};
     uint count = scene->settings->emitter_samples;
     for (uint k = 0; k < count; k++) {
         drawing.depth = (uints)(1 + k);
         v3 wo;
         LightSample light = sample_light(scene, &drawing, s, by_light, &wo);
-        BsdfResponse bsdf = bsdf_respond(scene, s, wo, light.active, none, NO_LANES);
-        sum = v3_add(sum, visible_light(scene, direct_light(scene, &drawing, s, light, wo, bsdf)));
+        BsdfResponse bsdf = bsdf_respond(scene, s, wo, light.active, no_numbers(), NO_LANES);
+        sum = v3_add(sum, visible_light(scene, direct_light(scene, &drawing, s, light, bsdf)));
     }
     return v3_scale(sum, (real)(1 / (real1)count));
 }

@@ -131,8 +131,8 @@ typedef struct {
     mask active;     // the lanes that have such a sample
 } DirectLight;
 
-// Completes a light sample by what the BSDF answers for its direction wo, local.
-static DirectLight direct_light(const Scene *scene, const Path *path, const Surface *s, LightSample light, v3 wo,
+// Completes a light sample by what the BSDF answers for its direction.
+static DirectLight direct_light(const Scene *scene, const Path *path, const Surface *s, LightSample light,
                                 BsdfResponse bsdf) {
     real inverse_pdf = light.inverse_pdf;
     if (CHOSEN(scene, lighting, mis)) {
@@ -141,7 +141,7 @@ static DirectLight direct_light(const Scene *scene, const Path *path, const Surf
         real weight = mis_weight(scene, light.discrete ? (real)(0) : ratio);
         inverse_pdf = weight * inverse_pdf;
     }
-    v3 light_in = v3_scale(v3_mul(bsdf.f, light.radiance), fabs(wo.z) * inverse_pdf);
+    v3 light_in = v3_scale(v3_mul(bsdf.f, light.radiance), bsdf.cosine * inverse_pdf);
     // Light that is not finite must reach the film, where it is counted.
     mask active = light.active & ((v3_largest(light_in) > 0) | !is_finite(light_in));
     DirectLight direct = {v3_mul(path->throughput, light_in), shadow_ray(s, light), active};
@@ -201,10 +201,14 @@ static CALLED mask interact(const Scene *scene, Path *path, const Surface *s, ma
                      DirectLight *direct) {
     v3 wo;
     LightSample light = sample_light(scene, path, s, by_light, &wo);
-    BsdfNumbers numbers = {path_draw(scene, path, DIM_BSDF), lobe, (real)(0)};
-    if (OPAL_HAS_bsdf_mask) numbers.met = path_draw(scene, path, DIM_MET).x;
+    BsdfNumbers numbers = {path_draw(scene, path, DIM_BSDF), lobe, (real)(0), (real)(0)};
+    if (OPAL_HAS_bsdf_mask || OPAL_HAS_bsdf_blendbsdf) {
+        v2 choices = path_draw(scene, path, DIM_MET);
+        numbers.met = choices.x;
+        numbers.leaf = choices.y;
+    }
     BsdfResponse bsdf = bsdf_respond(scene, s, wo, light.active, numbers, by_bsdf);
-    *direct = direct_light(scene, path, s, light, wo, bsdf);
+    *direct = direct_light(scene, path, s, light, bsdf);
     return scatter(scene, path, s, bsdf.sample, by_bsdf);
 }
 

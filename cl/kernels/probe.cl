@@ -92,8 +92,9 @@ kernel void bsdf_draw(SCENE_PARAMETERS, uint mesh, float wi_x, float wi_y, float
     if (base >= stride) return;
     Scene scene = SCENE_OF_PARAMETERS;
     Surface surface = flat_surface(&scene, mesh, wi_x, wi_y, wi_z);
-    BsdfNumbers numbers = {get_v2(given, 0, stride, base), get(given, 2, stride, base), (real)(0)};
+    BsdfNumbers numbers = {get_v2(given, 0, stride, base), get(given, 2, stride, base), (real)(0), (real)(0)};
     if (OPAL_HAS_bsdf_mask) numbers.met = get(given, 3, stride, base);
+    if (OPAL_HAS_bsdf_blendbsdf) numbers.leaf = get(given, 4, stride, base);
     BsdfSample s = bsdf_sample(&scene, &surface, numbers, ALL_LANES);
     put_v3(out, BSDF_WO_X, stride, base, to_world(surface.frame, s.wo));
     put_v3(out, BSDF_WEIGHT_R, stride, base, s.weight);
@@ -109,8 +110,8 @@ kernel void bsdf_value(SCENE_PARAMETERS, uint mesh, float wi_x, float wi_y, floa
     Scene scene = SCENE_OF_PARAMETERS;
     Surface surface = flat_surface(&scene, mesh, wi_x, wi_y, wi_z);
     v3 wo = to_local(surface.frame, get_v3(points, WARP_X, stride, base));
-    BsdfNumbers numbers = {v2_of((real)(0), (real)(0)), (real)(0), (real)(0)};
-    BsdfResponse r = bsdf_respond(&scene, &surface, wo, ALL_LANES, numbers, NO_LANES);
+    BsdfResponse r = bsdf_respond(&scene, &surface, wo, ALL_LANES, no_numbers(), NO_LANES);
+    if (OPAL_HAS_bsdf_blendbsdf) r.f = v3_scale(r.f, 1 / fabs(wo.z)); // which has the cosine
     put_v3(out, EVAL_R, stride, base, r.f);
     put(out, EVAL_PDF, stride, base, r.pdf);
 }

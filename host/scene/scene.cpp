@@ -1,5 +1,7 @@
 #include "scene/scene.h"
 
+#include "base/error.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -51,6 +53,19 @@ unsigned emitter_traits(unsigned kind) {
 bool Bsdf::leads_to(uint wanted) const {
     return kind() == wanted ||
            std::any_of(children.begin(), children.end(), [&](const Bsdf &child) { return child.leads_to(wanted); });
+}
+
+size_t Bsdf::count() const {
+    size_t count = 1;
+    for (const Bsdf &child : children)
+        count += child.count();
+    return count;
+}
+
+void Bsdf::check_count() const {
+    if (count() > most_bsdfs)
+        throw Error(fmt::format("{}: this {} and what is within it are {} BSDFs; possible: {}", place.text(),
+                                bsdf_name(kind()), count(), most_bsdfs));
 }
 
 bool Bsdf::is_textured() const {

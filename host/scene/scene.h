@@ -37,6 +37,10 @@ const char *bsdf_name(unsigned kind);   // kind: BSDF_*
 unsigned bsdf_traits(unsigned kind);    // OPAL_SMOOTH and so on, as bits; of a kind that leads to others its own
 const char *camera_name(unsigned kind); // kind: CAMERA_*
 
+// The most BSDFs of a material. One that two references name counts twice: few lines could make a million. At most 15
+// blends lead to one then (BlendLeaf of cl/bsdfs/interface.cl can count 31).
+constexpr size_t most_bsdfs = 32;
+
 // A material: the record of its kind, ready for the device but for the places of the BSDFs that it leads to. By default
 // a grey diffuse one.
 struct Bsdf {
@@ -51,6 +55,8 @@ struct Bsdf {
     uint kind() const { return words[0]; } // BSDF_*
     unsigned traits() const;               // OPAL_SMOOTH and so on, as bits; those of its children where it has some
     bool leads_to(uint kind) const;        // is of that kind, or a BSDF within it is
+    size_t count() const;                  // itself and the BSDFs within it
+    void check_count() const;              // Error at its place if there are more than most_bsdfs
     bool is_textured() const;              // or a BSDF within it is
     template <class Record> bool is() const { return kind() == Record{}.kind; }
     template <class Record> Record as() const { return record_of<Record>(words); } // is<Record>() must hold

@@ -109,6 +109,15 @@ Bsdf parse_mask(Importer &importer, Object &object) {
     return bsdf;
 }
 
+Bsdf parse_blendbsdf(Importer &importer, Object &object) {
+    Bsdf bsdf = bsdf_blendbsdf_record{};
+    if (!object.has("weight"))
+        object.mistake("a blendbsdf needs a property 'weight'");
+    set_parameter(importer, object, "weight", bsdf, "weight");
+    bsdf.children = parse_children(importer, object, 2, 2);
+    return bsdf;
+}
+
 Bsdf parse_null(Importer &, Object &) { return bsdf_null_record{}; }
 
 const std::vector<Plugin<Bsdf (*)(Importer &, Object &)>> bsdf_types = {
@@ -117,6 +126,7 @@ const std::vector<Plugin<Bsdf (*)(Importer &, Object &)>> bsdf_types = {
     {"conductor", "mirror", parse_conductor},
     {"twosided", "twosided", parse_twosided},
     {"mask", "mask", parse_mask},
+    {"blendbsdf", "blendbsdf", parse_blendbsdf},
     {"null", "null", parse_null},
 };
 
@@ -127,8 +137,12 @@ void parse_bsdf(Importer &importer, Object &object, Bsdf &bsdf) {
     if (!type)
         return;
     const SourcePlace place = object.place();
-    importer.context().attempt(object, [&] { bsdf = type->parse(importer, object); });
-    bsdf.place = place;
+    importer.context().attempt(object, [&] {
+        Bsdf made = type->parse(importer, object);
+        made.place = place;
+        made.check_count();
+        bsdf = std::move(made);
+    });
     object.finish();
 }
 

@@ -92,6 +92,7 @@ Bsdf parse_bsdf(const XmlNode &node, const ParseContext &context) {
     for (const Parameter &parameter : bsdf_parameters(bsdf.kind()))
         read_parameter(properties, parameter, bsdf.words);
     add_children(properties, *type, bsdf);
+    bsdf.check_count();
     properties.ignore("use_cosine"); // exporters write it for every material
     properties.finish();
     return bsdf;
