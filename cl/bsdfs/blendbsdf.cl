@@ -5,8 +5,10 @@
 #include "bsdfs/interface.cl"
 #include "core/lanes.cl"
 #include "core/math.cl"
+#include "scene.cl"
+#include "surface.cl"
 
-static BsdfOpening blendbsdf_open(blendbsdf_bsdf b, BsdfOpening o) {
+static BsdfOpening blendbsdf_open(const Scene *scene, const Surface *s, blendbsdf_bsdf b, BsdfOpening o, mask m) {
     real weight = real_min(real_max(b.weight, (real)(0)), (real)(1));
     real middle = o.leaf.low + (o.leaf.high - o.leaf.low) * (1 - weight);
     uints bit = (uints)(0x80000000u) >> o.leaf.blends;

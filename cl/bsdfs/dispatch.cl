@@ -2,11 +2,13 @@
 // as soon as one active lane needs it.
 #include "bsdfs/*.cl"
 #include "bsdfs/list.h"
+#include "bsdfs/perturb.cl"
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "core/rng.cl"
 #include "scene.cl"
 #include "surface.cl"
+#include "textures/interface.cl"
 
 #define COUNT_BSDF(name, traits) +OPAL_HAS_bsdf_##name
 #define COUNT_TRANSMITTING(name, traits) +(OPAL_HAS_bsdf_##name && ((traits) & OPAL_TRANSMITS) != 0)
@@ -39,7 +41,11 @@ static mask bsdf_lanes(uints kind, uint wanted) {
 // Sets the surface's BSDF, frame, wi and opacity to those of the BSDF that nested ones lead to, which is that leaf of
 // blends. Returns the leaf with its share.
 static BlendLeaf bsdf_open_leaf(const Scene *scene, Surface *s, BlendLeaf leaf, mask active) {
-    BsdfOpening o = {s->bsdf, s->wi, s->frame, (real)(1), leaf};
+    BsdfOpening o = {s->bsdf, s->wi, s->frame, (real)(1), leaf, NO_LANES};
+    for (int i = 0; i < PERTURBATION_PLACES; i++) {
+        o.perturbations[i].normal = v3_of((real)(0), (real)(0), (real)(1)); // nothing is perturbed
+        o.perturbations[i].shadows = NO_LANES;
+    }
     mask opened;
     do {
         uints kind = bsdf_kind(scene, o.at);
@@ -47,7 +53,10 @@ static BlendLeaf bsdf_open_leaf(const Scene *scene, Surface *s, BlendLeaf leaf, 
 #define OPEN(name, traits) \
         if (OPAL_HAS_bsdf_##name) { \
             mask m = active & to_mask(kind == BSDF_##name); \
-            if (ANY(m)) o = bsdf_opening_pick(m, name##_open(name##_at(scene, o.at, s->uv, m), o), o); \
+            if (ANY(m)) { \
+                name##_bsdf b = name##_at(scene, o.at, texture_point_of(s), m); \
+                o = bsdf_opening_pick(m, name##_open(scene, s, b, o, m), o); \
+            } \
             opened = opened | m; \
         }
         OPAL_NESTING_BSDFS(OPEN)
@@ -56,6 +65,7 @@ static BlendLeaf bsdf_open_leaf(const Scene *scene, Surface *s, BlendLeaf leaf, 
     s->wi = o.wi;
     s->frame = o.frame;
     s->opacity = o.opacity;
+    for (int i = 0; i < OPAL_PERTURBATIONS; i++) s->perturbations[i] = o.perturbations[i];
     return o.leaf;
 }
 
@@ -123,7 +133,7 @@ static BsdfResponse opened_respond(const Scene *scene, const Surface *s, v3 wo, 
         mask same = bsdf_lanes(kind, BSDF_##name); \
         mask m_evaluated = evaluated & same, m_sampled = sampled & same; \
         if (ANY(m_evaluated | m_sampled)) { \
-            name##_bsdf b = name##_at(scene, s->bsdf, s->uv, m_evaluated | m_sampled); \
+            name##_bsdf b = name##_at(scene, s->bsdf, texture_point_of(s), m_evaluated | m_sampled); \
             if (!IS_DISCRETE(traits)) { \
                 r.f = v3_pick(m_evaluated, name##_eval(b, s->wi, wo), r.f); \
                 r.pdf = m_evaluated ? name##_pdf(b, s->wi, wo) : r.pdf; \
@@ -133,6 +143,13 @@ static BsdfResponse opened_respond(const Scene *scene, const Surface *s, v3 wo, 
     }
     OPAL_BSDFS(RESPOND)
     if (OPAL_HAS_bsdf_mask) r = masked(s, r, numbers.met, sampled);
+    if (OPAL_PERTURBATIONS > 0) {
+        real lit = perturbation_factor(s, wo), sent = perturbation_factor(s, r.sample.wo);
+        r.f = v3_scale(r.f, lit);
+        r.pdf = lit > 0 ? r.pdf : (real)(0);
+        r.sample.weight = v3_scale(r.sample.weight, sent);
+        r.sample.pdf = sent > 0 ? r.sample.pdf : (real)(0);
+    }
     return r;
 }
 

@@ -7,7 +7,8 @@
 //                                               and, if that is simpler, where weights are 0
 //   BsdfSample NAME_sample(b, wi, u, lobe)      draws wo by random numbers u and lobe in [0, 1)
 // A BSDF that leads to others (OPAL_NESTING_BSDFS) offers this alone:
-//   BsdfOpening NAME_open(b, o)                 the BSDF to ask in its place, and the directions to ask it with
+//   BsdfOpening NAME_open(scene, s, b, o, m)    the BSDF to ask in its place of the surface s, and the directions to ask
+//                                               it with, in the lanes of m
 // b is a NAME_bsdf, the lanes' parameters; NAME_at reads them. Both are made of bsdfs/NAME.h below.
 // Functions compute all lanes; their callers pick those that are meant.
 #include "bsdfs/list.h"
@@ -15,15 +16,17 @@
 #include "core/math.cl"
 #include "parameters.cl"
 #include "scene.cl"
+#include "surface.cl"
+#include "textures/interface.cl"
 
-// NAME_bsdf, and NAME_at: the parameters at `uv` of the BSDFs whose records begin at word `at`. Lanes that are not
+// NAME_bsdf, and NAME_at: the parameters at `point` of the BSDFs whose records begin at word `at`. Lanes that are not
 // active may have records of other kinds: the host pads the table, so that no read passes its end.
 #define BSDF_READER(name, traits) \
     typedef struct { \
         uints at; \
         OPAL_BSDF_##name(LANES_MEMBER) \
     } name##_bsdf; \
-    static name##_bsdf name##_at(const Scene *scene, uints at, v2 uv, mask active) { \
+    static name##_bsdf name##_at(const Scene *scene, uints at, TexturePoint point, mask active) { \
         enum { OPAL_BSDF_##name(PARAMETER_PLACE) textured = OPAL_TEXTURED_bsdf_##name }; \
         global const bsdf_##name##_record *record = (global const bsdf_##name##_record *)scene->bsdfs; \
         name##_bsdf lanes; \
@@ -62,6 +65,8 @@ typedef struct {
     Frame frame;    // around the shading normal
     real opacity;   // the probability that light meets the BSDF (bsdfs/mask.cl)
     BlendLeaf leaf; // of kernels with blends
+    mask mirrored;  // `frame` is left-handed: a twosided is seen from behind
+    Perturbation perturbations[PERTURBATION_PLACES]; // as in Surface
 } BsdfOpening;
 
 static BsdfOpening bsdf_opening_pick(mask m, BsdfOpening yes, BsdfOpening no) {
@@ -70,7 +75,12 @@ static BsdfOpening bsdf_opening_pick(mask m, BsdfOpening yes, BsdfOpening no) {
                      {v3_pick(m, yes.frame.s, no.frame.s), v3_pick(m, yes.frame.t, no.frame.t),
                       v3_pick(m, yes.frame.n, no.frame.n)},
                      m ? yes.opacity : no.opacity,
-                     blend_leaf_pick(m, yes.leaf, no.leaf)};
+                     blend_leaf_pick(m, yes.leaf, no.leaf),
+                     (m & yes.mirrored) | (!m & no.mirrored)};
+    for (int i = 0; i < PERTURBATION_PLACES; i++) {
+        o.perturbations[i].normal = v3_pick(m, yes.perturbations[i].normal, no.perturbations[i].normal);
+        o.perturbations[i].shadows = (m & yes.perturbations[i].shadows) | (!m & no.perturbations[i].shadows);
+    }
     return o;
 }
 

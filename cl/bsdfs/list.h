@@ -3,11 +3,13 @@
 #define OPAL_BSDF_LIST_H
 
 #include "bsdfs/blendbsdf.h"
+#include "bsdfs/bumpmap.h"
 #include "bsdfs/dielectric.h"
 #include "bsdfs/diffuse.h"
 #include "bsdfs/mask.h"
 #include "bsdfs/microfacet.h"
 #include "bsdfs/mirror.h"
+#include "bsdfs/normalmap.h"
 #include "bsdfs/null.h"
 #include "bsdfs/phong.h"
 #include "bsdfs/twosided.h"
@@ -16,10 +18,12 @@
 
 // Traits of a kind, as bits.
 enum {
-    OPAL_SMOOTH = 1,      // some of its light has a density, so that light sampling serves it
-    OPAL_DISCRETE = 2,    // some of its light leaves in single directions
-    OPAL_TRANSMITS = 4,   // light passes through the surface
-    OPAL_HOLDS_OPAQUE = 8 // of a BSDF that leads to others: these must not have the trait OPAL_TRANSMITS
+    OPAL_SMOOTH = 1,       // some of its light has a density, so that light sampling serves it
+    OPAL_DISCRETE = 2,     // some of its light leaves in single directions
+    OPAL_TRANSMITS = 4,    // light passes through the surface
+    OPAL_HOLDS_OPAQUE = 8, // of a BSDF that leads to others: these must not have the trait OPAL_TRANSMITS
+    OPAL_TANGENTS = 16,    // asks for dpdu and dpdv of Surface: the kernel gets the feature `tangents`
+    OPAL_PERTURBS = 32     // of a BSDF that leads to another: it asks that about another shading normal
 };
 
 // BSDF(name, traits)
@@ -36,7 +40,9 @@ enum {
 #define OPAL_NESTING_BSDFS(BSDF) \
     BSDF(twosided, OPAL_HOLDS_OPAQUE) \
     BSDF(mask, OPAL_DISCRETE | OPAL_TRANSMITS) \
-    BSDF(blendbsdf, 0)
+    BSDF(blendbsdf, 0) \
+    BSDF(normalmap, OPAL_TANGENTS | OPAL_PERTURBS) \
+    BSDF(bumpmap, OPAL_TANGENTS | OPAL_PERTURBS)
 
 #define OPAL_ALL_BSDFS(BSDF) OPAL_BSDFS(BSDF) OPAL_NESTING_BSDFS(BSDF)
 

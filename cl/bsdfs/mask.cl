@@ -4,9 +4,12 @@
 // paths that pass find the light behind the surface. bsdf_respond draws whether a path passes.
 #include "bsdfs/interface.cl"
 #include "core/lanes.cl"
+#include "core/math.cl"
+#include "scene.cl"
+#include "surface.cl"
 
-static BsdfOpening mask_open(mask_bsdf b, BsdfOpening o) {
+static BsdfOpening mask_open(const Scene *scene, const Surface *s, mask_bsdf b, BsdfOpening o, mask m) {
     o.at = b.base;
-    o.opacity = o.opacity * b.opacity;
+    o.opacity = o.opacity * real_min(real_max(b.opacity, (real)(0)), (real)(1)); // textures know no limits
     return o;
 }

@@ -73,7 +73,7 @@ kernel void warp_pdf(int which, float parameter, global const float *points, glo
     put(out, 0, stride, base, pdf);
 }
 
-// A surface of a mesh in the plane z = 0, seen from wi, at uv = 0.
+// A surface of a mesh in the plane z = 0, seen from wi, at uv = 0, which grow along x and y by 1 over a length of 2.
 static Surface flat_surface(const Scene *scene, uint mesh, float wi_x, float wi_y, float wi_z) {
     real zero = 0, one = 1;
     Surface s = no_surface();
@@ -81,6 +81,8 @@ static Surface flat_surface(const Scene *scene, uint mesh, float wi_x, float wi_
     s.frame.t = v3_of(zero, one, zero);
     s.frame.n = s.normal = v3_of(zero, zero, one);
     s.wi = v3_of((real)(wi_x), (real)(wi_y), (real)(wi_z));
+    s.dpdu = v3_of(2 * one, zero, zero);
+    s.dpdv = v3_of(zero, 2 * one, zero);
     s.bsdf = (uints)(scene->meshes[mesh].bsdf);
     bsdf_open(scene, &s, ALL_LANES);
     return s;
@@ -109,9 +111,10 @@ kernel void bsdf_value(SCENE_PARAMETERS, uint mesh, float wi_x, float wi_y, floa
     if (base >= stride) return;
     Scene scene = SCENE_OF_PARAMETERS;
     Surface surface = flat_surface(&scene, mesh, wi_x, wi_y, wi_z);
-    v3 wo = to_local(surface.frame, get_v3(points, WARP_X, stride, base));
+    v3 point = get_v3(points, WARP_X, stride, base), wo = to_local(surface.frame, point);
     BsdfResponse r = bsdf_respond(&scene, &surface, wo, ALL_LANES, no_numbers(), NO_LANES);
-    if (OPAL_HAS_bsdf_blendbsdf) r.f = v3_scale(r.f, 1 / fabs(wo.z)); // which has the cosine
+    if (OPAL_HAS_bsdf_blendbsdf + OPAL_PERTURBATIONS > 0) // the cosine is that of the mesh's own normal
+        r.f = v3_scale(r.f, r.cosine / fabs(point.z));
     put_v3(out, EVAL_R, stride, base, r.f);
     put(out, EVAL_PDF, stride, base, r.pdf);
 }
@@ -186,4 +189,9 @@ kernel void trace(SCENE_PARAMETERS, global const float *rays, global float *out,
     put_v3(out, HIT_P_X, stride, base, s.p);
     put_v3(out, HIT_NORMAL_X, stride, base, s.normal);
     put(out, HIT_RAY_OFFSET, stride, base, s.ray_offset);
+    put(out, HIT_UV_U, stride, base, s.uv.x);
+    put(out, HIT_UV_V, stride, base, s.uv.y);
+    v3 none = v3_all((real)(0));
+    put_v3(out, HIT_DPDU_X, stride, base, OPAL_HAS_tangents ? s.dpdu : none);
+    put_v3(out, HIT_DPDV_X, stride, base, OPAL_HAS_tangents ? s.dpdv : none);
 }

@@ -64,9 +64,9 @@ static v3 mixed(v3 a, v3 b, real share) { // a + share (b - a) would lose a dim 
     return v3_mad(b, share, v3_scale(a, 1 - share));
 }
 
-static v3 texture_bitmap_color(const Scene *scene, uints at, v2 uv, mask active) {
+static v3 texture_bitmap_color(const Scene *scene, uints at, TexturePoint point, mask active) {
     global const texture_bitmap_record *record = (global const texture_bitmap_record *)scene->textures;
-    uv = texture_uv(record->to_uv, at, uv);
+    v2 uv = texture_uv(record->to_uv, at, point.uv);
     uints wrap = GATHER_WORD(uints, &record->wrap, at);
     mask nearest = to_mask(GATHER_WORD(uints, &record->nearest, at) != 0u);
     Bitmap b;
@@ -83,4 +83,29 @@ static v3 texture_bitmap_color(const Scene *scene, uints at, v2 uv, mask active)
     v3 bottom = mixed(bitmap_texel(scene, b, x.texel[0], y.texel[1]), bitmap_texel(scene, b, x.texel[1], y.texel[1]),
                       x.share);
     return mixed(top, bottom, y.share);
+}
+
+// Of the bilinear interpolation: it jumps from cell to cell. 0 of the nearest texel.
+static v2 texture_bitmap_gradient(const Scene *scene, uints at, TexturePoint point, mask active) {
+    global const texture_bitmap_record *record = (global const texture_bitmap_record *)scene->textures;
+    v2 uv = texture_uv(record->to_uv, at, point.uv);
+    uints wrap = GATHER_WORD(uints, &record->wrap, at), height = GATHER_WORD(uints, &record->height, at);
+    mask nearest = to_mask(GATHER_WORD(uints, &record->nearest, at) != 0u);
+    Bitmap b;
+    b.width = GATHER_WORD(uints, &record->width, at);
+    b.channels = GATHER_WORD(uints, &record->channels, at);
+    b.first = GATHER_WORD(uints, &record->first, at);
+    b.decode = GATHER_WORD(uints, &record->decode, at);
+    b.bytes = active & to_mask(b.decode != OPAL_NONE);
+    b.floats = active & to_mask(b.decode == OPAL_NONE);
+    TexelPair x = texels_at(uv.x, b.width, wrap, nearest), y = texels_at(uv.y, height, wrap, nearest);
+    real value[2][2];
+    for (int j = 0; j < 2; j++)
+        for (int i = 0; i < 2; i++) value[j][i] = luminance(bitmap_texel(scene, b, x.texel[i], y.texel[j]));
+    real along_x = (1 - y.share) * (value[0][1] - value[0][0]) + y.share * (value[1][1] - value[1][0]);
+    real along_y = (1 - x.share) * (value[1][0] - value[0][0]) + x.share * (value[1][1] - value[0][1]);
+    along_x = nearest ? (real)(0) : along_x * to_real(b.width);
+    along_y = nearest ? (real)(0) : along_y * to_real(height);
+    v3 to_x = texture_words(record->to_uv[0], at), to_y = texture_words(record->to_uv[1], at); // the chain rule
+    return v2_of(along_x * to_x.x + along_y * to_y.x, along_x * to_x.y + along_y * to_y.y);
 }

@@ -146,6 +146,7 @@ std::string program_text(const Features &features, const BuildOptions &options, 
     text += fmt::format("#define OPAL_TEXTURED_bsdf_" #name " {}\n", features.textured[BSDF_##name]);
     OPAL_ALL_BSDFS(OPAL_TEXTURED_ROW)
 #undef OPAL_TEXTURED_ROW
+    text += fmt::format("#define OPAL_PERTURBATIONS {}\n", features.perturbations);
 #define OPAL_AXIS_DEFINE(axis, needs, help)                                                                            \
     text += fmt::format("#define OPAL_AXIS_" #axis " {}\n", features.axes[AXIS_##axis]);
     OPAL_AXES(OPAL_AXIS_DEFINE)

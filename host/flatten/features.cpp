@@ -123,8 +123,12 @@ public:
     }
 
     Decision uv() const {
-        const bool textured = is_textured(description);
-        return {textured, textured ? "a material has a texture" : "no material has a texture"};
+        const bool needed = needs_uv(description);
+        return {needed, needed ? "something on a surface has a texture" : "nothing on a surface has a texture"};
+    }
+
+    Decision tangents() const {
+        return bsdfs([&](uint at) { return (bsdf_traits(scene.bsdfs[at]) & OPAL_TANGENTS) != 0; });
     }
 
     Decision light_textures() const {
@@ -239,6 +243,15 @@ std::array<uint, BSDF_COUNT> find_textured(const FlatScene &scene, bool speciali
     return textured;
 }
 
+// The most BSDFs of a nest that change the shading normal, one within the other.
+uint find_perturbations(const FlatScene &scene, uint at) {
+    uint within = 0;
+    for (const Parameter &parameter : bsdf_parameters(scene.bsdfs[at]))
+        if (parameter.type == ParameterType::BSDF)
+            within = std::max(within, find_perturbations(scene, scene.bsdfs[at + parameter.word]));
+    return within + ((bsdf_traits(scene.bsdfs[at]) & OPAL_PERTURBS) != 0);
+}
+
 // Does a program for all scenes have the feature? Where no scene of that width has it, or where it costs most scenes
 // more than it saves a few, it has not: prefetching a tree that fits into the caches takes 5 to 10 % of its time.
 bool general_has(unsigned feature, int lanes) {
@@ -250,7 +263,8 @@ bool general_has(unsigned feature, int lanes) {
 // Features whose scenes have a general kernel of their own, which does not ask at run time.
 bool has_general_kernel(unsigned feature) {
     return feature == FEATURE_endless_paths || feature == FEATURE_hidden_emitters || feature == FEATURE_uv ||
-           feature == FEATURE_light_textures || feature == FEATURE_bsdf_blendbsdf;
+           feature == FEATURE_tangents || feature == FEATURE_light_textures || feature == FEATURE_bsdf_blendbsdf ||
+           feature == FEATURE_bsdf_normalmap || feature == FEATURE_bsdf_bumpmap;
 }
 
 // Features of a second program for all scenes, which serves scenes that have one of these. Scenes of Nori's own kinds
@@ -313,6 +327,9 @@ Features find_features(const SceneDescription &description, const FlatScene &sce
     }
     features.loop = integrator_of(description.strategy).loop;
     features.textured = find_textured(scene, specialise);
+    if (integrator_of(description.strategy).has(OPAL_ASKS_BSDFS))
+        for (const MeshRecord &mesh : scene.meshes)
+            features.perturbations = std::max(features.perturbations, find_perturbations(scene, mesh.bsdf));
     return features;
 }
 
@@ -324,6 +341,7 @@ Features shared_features(const std::vector<FlatScene> &scenes) {
                 shared.list[i] = scene.features.list[i];
         for (std::size_t kind = 0; kind < shared.textured.size(); kind++)
             shared.textured[kind] |= scene.features.textured[kind];
+        shared.perturbations = std::max(shared.perturbations, scene.features.perturbations);
         for (int axis = 0; axis < AXIS_COUNT; axis++)
             if (scene.features.axes[axis] != shared.axes[axis]) {
                 shared.axes[axis] = -1;

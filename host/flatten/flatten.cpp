@@ -83,8 +83,13 @@ void fill_strategy(const SceneDescription &description, const Flattening &flatte
     std::copy(strategy.choices.begin(), strategy.choices.end(), settings.choices);
 }
 
-// The words of a material after --hemisphere, so that the device need not read the option.
-std::vector<uint> words_with_hemisphere(const Bsdf &bsdf, int hemisphere) {
+// The words of a material after --hemisphere, so that the device need not read the option, and in flattened units.
+std::vector<uint> flattened_words(const Bsdf &bsdf, int hemisphere, double scale) {
+    if (bsdf.is<bsdf_bumpmap_record>()) {
+        auto record = bsdf.as<bsdf_bumpmap_record>();
+        record.scale.value = float(record.scale.value * scale);
+        return words_of(record);
+    }
     if (!bsdf.is<bsdf_diffuse_record>() || hemisphere == CHOICE_hemisphere_material)
         return bsdf.words;
     auto record = bsdf.as<bsdf_diffuse_record>();
@@ -97,13 +102,14 @@ constexpr std::size_t longest_texture_record = std::max({OPAL_TEXTURES(OPAL_TEXT
 
 class BsdfGatherer {
 public:
-    BsdfGatherer(int hemisphere, TextureGatherer &textures, LargeVector<uint> &table)
-        : hemisphere_(hemisphere), textures_(textures), table_(table) {}
+    // scale: of flattening
+    BsdfGatherer(int hemisphere, double scale, TextureGatherer &textures, LargeVector<uint> &table)
+        : hemisphere_(hemisphere), scale_(scale), textures_(textures), table_(table) {}
 
     // Returns the first word of the record. BSDFs come after those that they lead to. A twosided with one BSDF has it
     // on both sides.
     uint add(const Bsdf &bsdf) {
-        std::vector<uint> words = words_with_hemisphere(bsdf, hemisphere_);
+        std::vector<uint> words = flattened_words(bsdf, hemisphere_, scale_);
         auto child = bsdf.children.begin();
         for (const Parameter &parameter : bsdf_parameters(bsdf.kind()))
             if (parameter.type == ParameterType::BSDF) {
@@ -121,13 +127,14 @@ public:
 
 private:
     int hemisphere_;
+    double scale_;
     TextureGatherer &textures_;
     LargeVector<uint> &table_;
     std::map<std::vector<uint>, uint> known_; // first word of each record
 };
 
 void gather_bsdfs(const SceneDescription &description, TextureGatherer &textures, FlatScene &scene) {
-    BsdfGatherer gatherer(description.strategy[AXIS_hemisphere], textures, scene.bsdfs);
+    BsdfGatherer gatherer(description.strategy[AXIS_hemisphere], scene.scale, textures, scene.bsdfs);
     for (const Mesh &mesh : description.meshes)
         scene.meshes.push_back({gatherer.add(mesh.bsdf), OPAL_NONE});
         // Lanes that are not meant read records of other kinds as far as the longest one reaches.

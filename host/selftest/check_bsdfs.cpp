@@ -212,7 +212,8 @@ Findings material_findings(KernelProbe &probe, const std::vector<Material> &mate
                 findings.push_back(
                     p_value("BSDFs: samples against density, smallest p", check.test.result.p_value, subject));
                 append(findings, check_samples(probe, id, wi, subject, effort));
-                findings.push_back(check_reciprocity(probe, id, wi, subject));
+                if (!(materials[id].bsdf.traits() & OPAL_PERTURBS)) // whose cosine is another normal's
+                    findings.push_back(check_reciprocity(probe, id, wi, subject));
             }
             findings.push_back(check_corners(probe, id, wi, subject));
         }

@@ -1,4 +1,5 @@
 // Parsers of materials.
+#include "base/log.h"
 #include "read/mitsuba/parsers.h"
 #include "scene/index_of_refraction.h"
 
@@ -118,6 +119,46 @@ Bsdf parse_blendbsdf(Importer &importer, Object &object) {
     return bsdf;
 }
 
+// Sets what normalmap and bumpmap have in common: the two flags and the material within.
+void set_perturbation(Importer &importer, Object &object, Bsdf &bsdf) {
+    for (const char *name : {"flip_invalid_normals", "use_shadowing_function"})
+        bsdf.words[find_row(bsdf_parameters(bsdf.kind()), "parameter", name).word] =
+            object.boolean(name).value_or(true);
+    bsdf.children = parse_children(importer, object, 1, 1);
+}
+
+Bsdf parse_normalmap(Importer &importer, Object &object) {
+    Bsdf bsdf = bsdf_normalmap_record{};
+    if (!object.has("normalmap"))
+        object.mistake("a normalmap needs a <texture> named 'normalmap'");
+    set_parameter(importer, object, "normalmap", bsdf, "normal");
+    for (const auto &[word, texture] : bsdf.textures)
+        if (const auto *bitmap = std::get_if<BitmapTexture>(&texture);
+            bitmap && bitmap->picture->encoded && !bitmap->raw)
+            note(object.place_of("normalmap").text() +
+                 ": these normals are decoded as sRGB, because 'raw' is not true: flat ones tilt by 38.8 degrees");
+    set_perturbation(importer, object, bsdf);
+    return bsdf;
+}
+
+Bsdf parse_bumpmap(Importer &importer, Object &object) {
+    Bsdf bsdf = bsdf_bumpmap_record{.height = 1};
+    const auto textures = object.children("texture");
+    if (textures.size() != 1) {
+        object.mistake(fmt::format("a bumpmap has 1 <texture> within it, not {}", textures.size()));
+        throw NoObject{};
+    }
+    if (const std::optional<Texture> &texture = importer.texture(*textures.front())) {
+        if (!std::holds_alternative<BitmapTexture>(*texture))
+            textures.front()->mistake("a bumpmap needs a texture of type bitmap, which has slopes");
+        bsdf.textures[find_row(bsdf_parameters(BSDF_bumpmap), "parameter", "height").texture_word] = *texture;
+    }
+    set_perturbation(importer, object, bsdf);
+    const double scale = object.number("scale").value_or(1);
+    bsdf.words[find_row(bsdf_parameters(BSDF_bumpmap), "parameter", "scale").word] = std::bit_cast<uint>(float(scale));
+    return bsdf;
+}
+
 Bsdf parse_null(Importer &, Object &) { return bsdf_null_record{}; }
 
 const std::vector<Plugin<Bsdf (*)(Importer &, Object &)>> bsdf_types = {
@@ -127,6 +168,8 @@ const std::vector<Plugin<Bsdf (*)(Importer &, Object &)>> bsdf_types = {
     {"twosided", "twosided", parse_twosided},
     {"mask", "mask", parse_mask},
     {"blendbsdf", "blendbsdf", parse_blendbsdf},
+    {"normalmap", "normalmap", parse_normalmap},
+    {"bumpmap", "bumpmap", parse_bumpmap},
     {"null", "null", parse_null},
 };
 
