@@ -6,18 +6,19 @@
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "core/rng.cl"
-#include "film/sums.cl"
 #include "film/filter.cl"
+#include "film/samples.cl"
+#include "film/sums.cl"
 #include "scene.cl"
 #include "shared/film.h"
 #include "shared/types.h"
 
 // The colour of sample s of each lane's pixel.
 static v3 sample_color(global const float *samples, uints pixel, uint s, uint pass_samples) {
-    global const float *sample = samples + OPAL_SAMPLE_FLOATS * s;
-    uints word = pixel * (OPAL_SAMPLE_FLOATS * pass_samples);
-    return v3_of(GATHER_WORD(real, sample, word), GATHER_WORD(real, (sample + 1), word),
-                 GATHER_WORD(real, (sample + 2), word));
+    uints word = SAMPLE_WORD(pixel, s, pass_samples);
+    uint step = SAMPLE_CHANNEL(1, pass_samples);
+    return v3_of(GATHER_WORD(real, samples, word), GATHER_WORD(real, (samples + step), word),
+                 GATHER_WORD(real, (samples + 2 * step), word));
 }
 
 // Counts the samples that are neither finite nor empty, and records pixel (of the film) and index of the first few.
@@ -27,8 +28,7 @@ static void note_invalid(global const float *samples, FilmPlace at, uint band_fi
     STORE(to_ints(valid), ok);
     for (uint lane = 0; lane < LANES && at.first + lane < at.pixels; lane++) {
         uint pixel = band_first + at.first + lane;
-        ulong sample = (ulong)pixel * pass_samples + s;
-        if (ok[lane] || as_uint(samples[OPAL_SAMPLE_FLOATS * sample]) == OPAL_SAMPLE_EMPTY) continue;
+        if (ok[lane] || as_uint(samples[SAMPLE_WORD(pixel, s, pass_samples)]) == OPAL_SAMPLE_EMPTY) continue;
         uint record = atomic_inc(invalid);
         if (record < OPAL_INVALID_RECORDS) {
             invalid[1 + 2 * record] = pixel;
@@ -49,8 +49,15 @@ kernel void gather(global const Settings *settings, global const float *samples,
     for (uint c = 0; c < 4; c++) squares[c] = film_load(film, at, FILM_SQUARES + c, FILM_SQUARES_LOW + c);
     uints count = (uints)(0);
     if (!at.empty) count = GATHER_WORD(uints, counts, at.pixel);
+    v3 colors[LANES];
+    uint loaded = 0, next = 0; // of `colors`
     for (uint s = 0; s < pass_samples; s++) {
-        v3 c = sample_color(samples, band_first + at.pixel, s, pass_samples);
+        if (next == loaded) {
+            loaded = load_colors(samples, band_first + at.pixel, s, pass_samples, colors);
+            next = 0;
+        }
+        fetch_next(samples, band_first + at.first, s, pass_samples);
+        v3 c = colors[next++];
         mask valid = is_finite(c);
         if (ANY(!valid)) note_invalid(samples, at, band_first, valid, s, pass_first, pass_samples, invalid);
         sums[0] = sum_add(sums[0], c.x, valid);

@@ -243,7 +243,8 @@ double Renderer::launch(const cl::Kernel &kernel, unsigned items) {
     return seconds;
 }
 
-// The samples of each pixel in the next pass: as many as let a launch take about launch_seconds, by the last pass. The
+// The samples of each pixel in the next pass: as many as let a launch take about launch_seconds, by the last pass. Each
+// chunk has a multiple of the lanes, if it can, because so many samples of a pixel are stored and added as vectors. The
 // first pass is a pilot with one sample a chunk.
 unsigned Renderer::next_pass_samples(unsigned left) const {
     unsigned samples = shape_.chunks;
@@ -252,9 +253,11 @@ unsigned Renderer::next_pass_samples(unsigned left) const {
         const double fitting = options_.launch_seconds * launches / seconds_a_sample_;
         samples = std::max(1u, unsigned(std::min(fitting, 1e9) / shape_.chunks)) * shape_.chunks;
     }
-    if (options_.max_pass_samples)
-        samples = options_.max_pass_samples;
-    return std::min(std::clamp(samples, 1u, buffer_spp_), left);
+    samples = std::clamp(options_.max_pass_samples ? options_.max_pass_samples : samples, 1u, buffer_spp_);
+    const unsigned vectors = shape_.chunks * unsigned(options_.build.lanes);
+    if (samples > vectors && !options_.max_pass_samples)
+        samples -= samples % vectors;
+    return std::min(samples, left);
 }
 
 void Renderer::set_pass_arguments(cl::Kernel &kernel, unsigned first_argument, unsigned chunk_samples,
