@@ -4,6 +4,9 @@
 #include "kernels/queue.cl"
 #include "shared/film.h"
 #include "shared/types.h"
+#if LANES > 1
+#include "film/many_lanes/strips.cl"
+#endif
 
 // Marks the samples of items that were not rendered (an interrupted pass) as empty.
 kernel void clear(global const Settings *settings, global float *samples, uint first_item, uint items, uint tile_width,
