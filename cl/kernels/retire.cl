@@ -27,8 +27,8 @@ static void retire(const Scene *scene, global float *samples, const Queue *queue
     uints word = SAMPLE_WORD(pixel, path->sampler.sample - queue->pass_first, samples_of_pixel);
     uint place[LANES];
     STORE(word, place);
-    if (LANES > 1 && !OPAL_COUNT_TESTS && ended == lanes_of(ALL_LANES) &&
-        !ANY(to_mask(word != place[0] + LANE_NUMBERS))) { // consecutive samples of a pixel, as they were started
+    bool together = LANES > 1 && ended == lanes_of(ALL_LANES) && !ANY(to_mask(word != place[0] + LANE_NUMBERS));
+    if (together && !OPAL_COUNT_TESTS) { // consecutive samples of a pixel, as they were started
         global float *first = samples + place[0];
         STORE(to_floats(light.x), first);
         STORE(to_floats(light.y), first + step);

@@ -7,8 +7,8 @@
 #define SAMPLE_WORD(pixel, sample, pass_samples) ((pixel) * (OPAL_SAMPLE_FLOATS * (pass_samples)) + (sample))
 #define SAMPLE_CHANNEL(c, pass_samples) ((c) * (pass_samples))
 
-// Exchanges rows and columns: log2(LANES) times, each row is woven with the one half the rows below. That turns the
-// bits of (row, column) by one place.
+// Exchanges rows and columns. Each step weaves rows i and i + LANES / 2, which rotates the bits of (row, column) by one
+// place; log2(LANES) steps exchange the two.
 static void transpose(real *rows) {
 #pragma unroll
     for (uint n = 1; n < LANES; n *= 2) {
@@ -46,8 +46,6 @@ static uint load_colors(global const float *samples, uints pixel, uint sample, u
     return LANES;
 }
 
-// Prefetches a part of the samples of the LANES pixels after `pixel`, which the next work-item reads: while s goes from
-// 0 to pass_samples, all of them.
 static void fetch_next(global const float *samples, uint pixel, uint s, uint pass_samples) {
     global const char *next = (global const char *)(samples + SAMPLE_WORD(pixel + LANES, 0u, pass_samples));
     enum { BYTES = 4 * OPAL_SAMPLE_FLOATS * LANES }; // of one sample of each pixel

@@ -10,3 +10,6 @@ static uint load_colors(global const float *samples, uint pixel, uint sample, ui
     *colors = v3_of(samples[word], samples[word + 1], samples[word + 2]);
     return 1;
 }
+
+// Work-items of one lane run by the thousand, which hides the latency of memory.
+static void fetch_next(global const float *samples, uint pixel, uint s, uint pass_samples) {}
