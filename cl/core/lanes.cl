@@ -59,6 +59,7 @@ typedef int2 quarter_keys;
 #define ANY(m) (m)
 #define LANE_BITS(m) ((uint)(m))
 #define LANE_PLACES 1
+#define LANE_NUMBERS 0u
 #define STORE(v, array) ((array)[0] = (v))
 #define LOAD(T, array) ((array)[0])
 #define to_mask(condition) (condition)
@@ -83,6 +84,10 @@ typedef int2 quarter_keys;
 #define PLACES_8 (int8)(PLACES_4, PLACES_4 << 4)
 #define PLACES_16 (int16)(PLACES_8, PLACES_8 << 8)
 #define LANE_PLACES CAT(PLACES_, LANES)
+#define NUMBERS_4 (uint4)(0, 1, 2, 3)
+#define NUMBERS_8 (uint8)(NUMBERS_4, NUMBERS_4 + 4)
+#define NUMBERS_16 (uint16)(NUMBERS_8, NUMBERS_8 + 8)
+#define LANE_NUMBERS CAT(NUMBERS_, LANES)
 #define LANE_BITS(m) CAT(BITS_, LANES)((m) & LANE_PLACES)
 #define STORE(v, array) CAT(vstore, LANES)(v, 0, array)
 #define LOAD(T, array) CAT(vload, LANES)(0, array)
@@ -117,6 +122,7 @@ typedef WIDE(uint) uints;
 #define real_bits(x) CAT(as_, WIDE(MASK_NAME))(x)
 #define real_of_bits(i) CAT(as_, WIDE(REAL_NAME))(i)
 #define to_real(i) CAT(convert_, WIDE(REAL_NAME))(i)
+#define to_floats(x) CAT(convert_, WIDE(float))(x)
 #define to_uints(x) CAT(convert_, WIDE(uint))(x)
 #define as_signed(i) CAT(as_, WIDE(int))(i)
 #define as_unsigned(i) CAT(as_, WIDE(uint))(i)

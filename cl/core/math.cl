@@ -67,7 +67,7 @@ static v3 reflect_z(v3 w) { return v3_of(-w.x, -w.y, w.z); }
 // Luminance of linear RGB (ITU-R BT.709).
 static real luminance(v3 c) { return R(0.212671) * c.x + R(0.715160) * c.y + R(0.072169) * c.z; }
 
-#define float_bits(x) CAT(as_, WIDE(uint))(CAT(convert_, WIDE(float))(x))
+#define float_bits(x) CAT(as_, WIDE(uint))(to_floats(x))
 
 // Are all three finite? Exponent bits are compared, because fast math removes isfinite().
 static mask is_finite(v3 c) {
