@@ -76,6 +76,10 @@ std::string text_of(const CheckerboardTexture &texture) {
 std::string text_of(const BitmapTexture &texture) {
     return fmt::format("a bitmap of {} x {} pixels", texture.picture->width, texture.picture->height);
 }
+std::string text_of(const MeshAttributeTexture &texture) {
+    return fmt::format("the mesh's {}{}", texture.name,
+                       texture.scale == 1 ? "" : fmt::format(" times {:g}", texture.scale));
+}
 
 // " times a bitmap of 64 x 64 pixels"
 std::string factor_text(const Texture &texture) {

@@ -194,9 +194,9 @@ FlatScene flatten(const SceneDescription &description, int lanes, bool with_face
     scene.crop = description.camera.window();
     fill_film(description.camera, scene.settings);
     fill_strategy(description, flattening, scene.settings);
-    TextureGatherer textures(scene.textures, scene.texels);
-    gather_bsdfs(description, textures, scene);
     TriangleSoup soup = gather_primitives(description, flattening, scene, on_gathered);
+    TextureGatherer textures(scene.textures, scene.texels, soup.attributes);
+    gather_bsdfs(description, textures, scene);
     build_acceleration(soup, light_points(description, flattening, soup, scene.triangles),
                        with_face_list && lanes >= FACE_LIST_LANES, description.strategy.is_general(), scene);
     gather_emitters(description, flattening, extent.radius(), soup, textures, scene);

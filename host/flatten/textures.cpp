@@ -4,6 +4,7 @@
 #include "base/srgb.h"
 #include "flatten/store.h"
 #include "scene/parameters.h"
+#include "scene/shapes.h"
 #include "shared/types.h"
 #include "textures/list.h"
 
@@ -42,6 +43,16 @@ double mean_of(const BitmapTexture &texture) {
     return luminance(sum) * double(channels) / double(values);
 }
 
+double mean_of(const MeshAttributeTexture &texture) {
+    const auto &values = texture.attribute->values;
+    const auto channels = std::size_t(texture.attribute->channels);
+    Color sum{};
+    for (std::size_t i = 0; i < values.size(); i++)
+        for (std::size_t c = i % channels; c < 3; c += channels)
+            sum[c] += double(values[i]);
+    return values.empty() ? 0 : texture.scale * luminance(sum) * double(channels) / double(values.size());
+}
+
 } // namespace
 
 double mean_luminance(const Texture &texture) {
@@ -70,6 +81,20 @@ std::vector<uint> TextureGatherer::words(const BitmapTexture &texture) {
     record.decode = decode;
     record.wrap = texture.wrap;
     record.nearest = texture.nearest;
+    return words_of(record);
+}
+
+std::vector<uint> TextureGatherer::words(const MeshAttributeTexture &texture) {
+    const auto range = std::ranges::find(attributes_, texture.attribute.get(), &AttributeRange::attribute);
+    if (range == attributes_.end())
+        throw Error(texture.name + ": a texture of an attribute is on something that is no mesh");
+    texture_mesh_attribute_record record{};
+    record.kind = TEXTURE_mesh_attribute;
+    record.stride = range->stride;
+    record.first = uint(range->first) - range->stride * range->triangle;
+    record.channels = uint(texture.attribute->channels);
+    record.corners = texture.attribute->of_faces ? 1 : 3;
+    record.scale = float(texture.scale);
     return words_of(record);
 }
 

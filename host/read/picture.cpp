@@ -120,4 +120,11 @@ Picture read_picture(const std::filesystem::path &file, FileHashes *hashes) {
     }
 }
 
+std::shared_ptr<const Picture> Pictures::at(const std::filesystem::path &file, FileHashes *hashes) {
+    std::shared_ptr<const Picture> &picture = known_[file];
+    if (!picture)
+        picture = std::make_shared<const Picture>(read_picture(file, hashes));
+    return picture;
+}
+
 } // namespace opal

@@ -38,6 +38,14 @@ struct BitmapTexture {
     UvTransform to_uv = identity_uv;
 };
 
-using Texture = std::variant<CheckerboardTexture, BitmapTexture>;
+struct MeshAttribute;
+
+struct MeshAttributeTexture {
+    std::string name; // "vertex_color", "face_color"
+    double scale = 1;
+    std::shared_ptr<const MeshAttribute> attribute; // that of the mesh; null before the mesh is known
+};
+
+using Texture = std::variant<CheckerboardTexture, BitmapTexture, MeshAttributeTexture>;
 
 } // namespace opal

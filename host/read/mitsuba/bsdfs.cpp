@@ -1,5 +1,6 @@
 // Parsers of materials.
 #include "read/mitsuba/parsers.h"
+#include "read/texture_values.h"
 #include "scene/index_of_refraction.h"
 
 #include <fmt/format.h>
@@ -37,6 +38,7 @@ void set_parameter(Importer &importer, Object &object, const std::string &proper
     } else if (const std::optional<Texture> texture = importer.texture(object, property)) {
         set(white); // which the texture multiplies
         bsdf.textures[parameter.texture_word] = *texture;
+        warn_of_values(object.place_of(property), parameter, *texture);
     }
 }
 

@@ -37,7 +37,7 @@ EmitterParameters parse_point(Importer &importer, Object &object) {
 
 EmitterParameters parse_spot(Importer &importer, Object &object) {
     const Transform to_world = object.transform("to_world").value_or(Transform());
-    object.check(keeps_angles(to_world), "to_world",
+    object.check(why_no_sphere(to_world).empty(), "to_world",
                  "a spot light must be scaled alike along all axes: its cone would not be round");
     const Color intensity = parse_emission(importer, object, "intensity");
     const double cutoff = object.number("cutoff_angle").value_or(20);
@@ -59,6 +59,10 @@ std::optional<LightTexture> parse_light_texture(Importer &importer, Object &obje
     const std::optional<Texture> &texture = importer.texture(*child);
     if (!texture)
         return std::nullopt;
+    if (std::holds_alternative<MeshAttributeTexture>(*texture)) {
+        object.mistake_at("texture", "a spot is no mesh, which has attributes");
+        return std::nullopt;
+    }
     const Transform to_world = object.transform("to_world").value_or(Transform());
     return LightTexture{*texture, normalize(to_world.vector({1, 0, 0})), normalize(to_world.vector({0, 1, 0}))};
 }
@@ -109,6 +113,7 @@ const auto &type_in(Importer &importer, Object &object, const char *parent) {
 
 void parse_area_emitter(Importer &importer, Object &object, Mesh &mesh) {
     type_in(importer, object, "shape");
+    importer.add_area_light(object);
     mesh.radiance = parse_emission(importer, object, "radiance");
     object.finish();
 }

@@ -1,6 +1,5 @@
 #include "base/log.h"
 #include "read/mitsuba/parsers.h"
-#include "read/picture.h"
 
 #include <fmt/format.h>
 
@@ -95,10 +94,7 @@ std::optional<Texture> Importer::texture(Object &object, const std::string &name
 }
 
 std::shared_ptr<const Picture> Importer::picture(const std::filesystem::path &file) {
-    std::shared_ptr<const Picture> &picture = pictures_[file];
-    if (!picture)
-        picture = std::make_shared<const Picture>(read_picture(file, context_.hashes));
-    return picture;
+    return context_.pictures->at(file, context_.hashes);
 }
 
 Color Importer::color(Object &object, const std::string &name, SpectrumUse use, const Color &otherwise) {
@@ -126,23 +122,11 @@ std::shared_ptr<Object> only_child(Object &object, const std::string &tag) {
     return children.front();
 }
 
-bool keeps_angles(const Transform &transform) {
-    const Vec3 x = column(transform, 0), y = column(transform, 1), z = column(transform, 2);
-    const double area = std::cbrt(transform.determinant() * transform.determinant()); // of a side, if all are alike
-    for (double square : {dot(x, x), dot(y, y), dot(z, z)})
-        if (!(std::abs(square - area) <= most_scale_error * area))
-            return false;
-    for (double product : {dot(x, y), dot(y, z), dot(z, x)})
-        if (!(std::abs(product) <= most_scale_error * area))
-            return false;
-    return area > 0;
-}
-
 bool keeps_lengths(const Transform &transform) {
     for (int i = 0; i < 3; i++)
         if (const Vec3 axis = column(transform, i); !(std::abs(dot(axis, axis) - 1) <= most_scale_error))
             return false;
-    return keeps_angles(transform);
+    return why_no_sphere(transform).empty();
 }
 
 } // namespace opal::mitsuba

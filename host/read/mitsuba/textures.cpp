@@ -40,7 +40,7 @@ Texture parse_bitmap(Importer &importer, Object &object) {
     texture.to_uv = parse_to_uv(object);
     for (const char *name : {"format", "accel"}) // how texels are stored
         object.ignore(name);
-    const auto file = object.file("filename");
+    const auto file = object.file("filename", "0.5 stands in for the texture");
     if (!object.has("filename"))
         object.mistake("the texture lacks its filename: <string name=\"filename\" value=\"a.png\"/>");
     if (!file)
@@ -54,9 +54,19 @@ Texture parse_bitmap(Importer &importer, Object &object) {
     return texture;
 }
 
+Texture parse_mesh_attribute(Importer &, Object &object) {
+    MeshAttributeTexture texture;
+    texture.name = object.string("name").value_or("");
+    object.check(texture.name.starts_with("vertex_") || texture.name.starts_with("face_"), "name",
+                 "the texture needs the name of an attribute, which begins with vertex_ or face_");
+    texture.scale = object.number("scale").value_or(1);
+    return texture;
+}
+
 const std::vector<Plugin<Texture (*)(Importer &, Object &)>> texture_types = {
     {"checkerboard", "checkerboard", parse_checkerboard},
     {"bitmap", "bitmap", parse_bitmap},
+    {"mesh_attribute", "mesh_attribute", parse_mesh_attribute},
 };
 
 } // namespace

@@ -92,6 +92,9 @@ Bsdf parse_bsdf(const XmlNode &node, const ParseContext &context) {
     for (const Parameter &parameter : bsdf_parameters(bsdf.kind()))
         read_parameter(properties, parameter, bsdf.words);
     add_children(properties, *type, bsdf);
+    for (const XmlNode &texture : properties.children("texture"))
+        context.attempt(texture, [&] { apply_texture(texture, context, node, bsdf); });
+    apply_picture(properties, bsdf);
     properties.ignore("use_cosine"); // exporters write it for every material
     properties.finish();
     return bsdf;

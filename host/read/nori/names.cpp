@@ -13,8 +13,8 @@ struct OtherName {
     std::string other, known;
 };
 
-// luminaire: Nori of 2012. shape: some forks.
-const std::vector<OtherName> other_tags = {{"luminaire", "emitter"}, {"shape", "mesh"}};
+// luminaire: Nori of 2012. shape, diffusemap: some forks.
+const std::vector<OtherName> other_tags = {{"luminaire", "emitter"}, {"shape", "mesh"}, {"diffusemap", "texture"}};
 
 struct OtherProperty {
     std::string tag, type; // of the object; no type: all
