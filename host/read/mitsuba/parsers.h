@@ -3,8 +3,8 @@
 #pragma once
 
 #include "read/mitsuba/object.h"
+#include "read/picture_loader.h"
 
-#include <map>
 #include <set>
 #include <unordered_map>
 
@@ -20,7 +20,7 @@ template <class Parse> struct Plugin {
 // What the parsers of a scene share: which plug-ins it uses, and what was made of objects that several others refer to.
 class Importer {
 public:
-    explicit Importer(const ParseContext &context) : context_(context) {}
+    explicit Importer(const ParseContext &context) : context_(context), pictures_(context.hashes) {}
 
     // The row of a table whose name is the object's plug-in; null where there is none, which finish() tells. The
     // properties of such an object are not looked at. instead: what is done if lenient.
@@ -47,12 +47,14 @@ public:
     // The <texture> that a property is, if it is one and can be read; read once likewise.
     std::optional<Texture> texture(Object &object, const std::string &name);
     const std::optional<Texture> &texture(Object &object);
-    std::shared_ptr<const Picture> picture(const std::filesystem::path &file); // read once
+    PictureLoader &pictures() { return pictures_; }
 
     // The colour of a property where Opal has no textures: one is a mistake, or if lenient its mean.
     Color color(Object &object, const std::string &name, SpectrumUse use, const Color &otherwise);
 
-    void finish(); // one mistake for each plug-in that Opal does not have; if lenient, a warning
+    // Waits for the pictures. One mistake for each picture that is damaged, and one for each plug-in that Opal does not
+    // have; if lenient, warnings.
+    void finish();
     std::vector<PluginUse> uses() const { return uses_; }
     const ParseContext &context() const { return context_; }
 
@@ -74,7 +76,7 @@ private:
     std::vector<Unknown> unknown_;
     std::unordered_map<const Object *, Bsdf> bsdfs_;
     std::unordered_map<const Object *, std::optional<Texture>> textures_;
-    std::map<std::filesystem::path, std::shared_ptr<const Picture>> pictures_;
+    PictureLoader pictures_;
 };
 
 // At most one child of that tag; a second one is a mistake.
