@@ -1,7 +1,7 @@
 // The context of parsing: the user's options, and what becomes of mistakes.
 #pragma once
 
-#include "read/picture.h"
+#include "read/picture_loader.h"
 #include "read/xml.h"
 #include "scene/scene.h"
 
@@ -44,7 +44,7 @@ struct ParseContext {
     Mistakes *mistakes = nullptr;     // gathers mistakes; null: the first one is thrown
     std::optional<Dialect> dialect{}; // nothing: a scene's names tell it
     FileHashes *hashes = nullptr;     // gets those of the files that are read; null: nobody asks
-    std::shared_ptr<Pictures> pictures = std::make_shared<Pictures>(); // of copies of the context, too
+    std::shared_ptr<PictureLoader> pictures = std::make_shared<PictureLoader>(); // of copies of the context, too
     // Is it an attribute that means nothing in this format, and gets a note? null: there is none.
     bool (*is_leftover)(const XmlNode &node, const std::string &attribute) = nullptr;
 

@@ -114,7 +114,7 @@ Parts parts_of(const ObjFile &obj) {
 }
 
 // The image of a statement, whose v grows upwards. It is looked for beside the library.
-std::optional<Texture> texture_of(const MtlTexture &image, const std::string &instead, Pictures &pictures,
+std::optional<Texture> texture_of(const MtlTexture &image, const std::string &instead, PictureLoader &pictures,
                                   FileHashes *hashes) {
     BitmapTexture texture;
     texture.wrap = image.clamp ? WRAP_clamp : WRAP_repeat;
@@ -125,7 +125,7 @@ std::optional<Texture> texture_of(const MtlTexture &image, const std::string &in
         const fs::path file = beside(image.place.file, image.file);
         if (!is_file(file))
             throw Error("no such file: " + file.string());
-        texture.picture = pictures.at(file, hashes);
+        texture.picture = pictures.load_now(file, hashes);
     } catch (const Error &error) {
         warn(fmt::format("{}: {}: {}; {}", image.place.text(), image.statement, error.what(), instead));
         return std::nullopt;
@@ -153,7 +153,7 @@ void add_surface(const MtlMaterial &material, const ObjMaterialOptions &options,
 } // namespace
 
 std::vector<Mesh> meshes_by_material(ObjFile &&obj, const fs::path &file, const Mesh &mesh, ObjMaterialOptions options,
-                                     FileHashes *hashes, const std::shared_ptr<Pictures> &pictures) {
+                                     FileHashes *hashes, const std::shared_ptr<PictureLoader> &pictures) {
     std::vector<Mesh> meshes;
     const Parts parts = parts_of(obj);
     if (parts.materials.empty()) { // no `usemtl`

@@ -17,7 +17,7 @@ struct ObjMaterialOptions {
 // materials and images that are missing and, a line a material, of what Opal does not render.
 std::vector<Mesh> meshes_by_material(ObjFile &&obj, const std::filesystem::path &file, const Mesh &mesh,
                                      ObjMaterialOptions options, FileHashes *hashes = nullptr,
-                                     const std::shared_ptr<Pictures> &pictures = std::make_shared<Pictures>());
+                                     const std::shared_ptr<PictureLoader> &pictures = std::make_shared<PictureLoader>());
 
 // Warns where a file has materials: Nori ignores them. Counts what is unused.
 void warn_of_unused_materials(const ObjFile &obj, const std::filesystem::path &file);

@@ -902,7 +902,7 @@ TEST_CASE_METHOD(MitsubaFixture, "textures of reflectance and opacity", "[mitsub
           ":3:40: property 'filter_type': unknown value 'ewa'; available: bilinear, nearest");
     CHECK_THAT(error("<string name='filename' value='b.png'/>"), Catch::StartsWith(":3:1: property 'filename': "));
     const std::string no_image = "<string name='filename' value='a.obj'/>";
-    CHECK_THAT(error(no_image), Catch::StartsWith(":3:1: property 'filename': ") && Catch::Contains("is no image"));
+    CHECK_THAT(error(no_image), Catch::StartsWith(":3:1: property 'filename': ") && Catch::Contains("not an image"));
     const std::vector<std::string> told =
         warnings_of("<emitter type='constant'/><shape type='cube'><bsdf type='diffuse'><texture name='reflectance' "
                     "type='bitmap'>" +

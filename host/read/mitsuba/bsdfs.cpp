@@ -38,7 +38,9 @@ void set_parameter(Importer &importer, Object &object, const std::string &proper
     } else if (const std::optional<Texture> texture = importer.texture(object, property)) {
         set(white); // which the texture multiplies
         bsdf.textures[parameter.texture_word] = *texture;
-        warn_of_values(object.place_of(property), parameter, *texture);
+        importer.context().pictures->when_loaded([place = object.place_of(property), &parameter, texture = *texture] {
+            warn_of_values(place, parameter, texture);
+        });
     }
 }
 

@@ -53,6 +53,7 @@ void Importer::count_unknown(Object &object, const std::vector<std::string> &kno
 }
 
 void Importer::finish() {
+    context_.pictures->finish();
     for (const Unknown &unknown : unknown_) {
         const std::string times = unknown.count == 1 ? "" : fmt::format(" ({} in the scene)", unknown.count);
         const std::string message = unknown_name(unknown.tag + " type", unknown.type, unknown.known, times);
@@ -91,10 +92,6 @@ const std::optional<Texture> &Importer::texture(Object &object) {
 std::optional<Texture> Importer::texture(Object &object, const std::string &name) {
     const auto child = object.has(name) ? object.child_named(name) : nullptr;
     return child && child->tag() == "texture" ? texture(*child) : std::nullopt;
-}
-
-std::shared_ptr<const Picture> Importer::picture(const std::filesystem::path &file) {
-    return context_.pictures->at(file, context_.hashes);
 }
 
 Color Importer::color(Object &object, const std::string &name, SpectrumUse use, const Color &otherwise) {

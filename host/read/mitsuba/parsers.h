@@ -46,7 +46,6 @@ public:
     // The <texture> that a property is, if it is one and can be read; read once likewise.
     std::optional<Texture> texture(Object &object, const std::string &name);
     const std::optional<Texture> &texture(Object &object);
-    std::shared_ptr<const Picture> picture(const std::filesystem::path &file); // read once
 
     // The colour of a property where Opal has no textures: one is a mistake, or if lenient its mean.
     Color color(Object &object, const std::string &name, SpectrumUse use, const Color &otherwise);
@@ -57,7 +56,9 @@ public:
 
     bool has_met(const Object &object) const { return counted_.contains(&object); } // was its plug-in looked at?
 
-    void finish(); // one mistake for each plug-in that Opal does not have; if lenient, a warning
+    // Waits for the pictures. One mistake for each picture that is damaged, and one for each plug-in that Opal does not
+    // have; if lenient, warnings.
+    void finish();
     std::vector<PluginUse> uses() const { return uses_; }
     const ParseContext &context() const { return context_; }
 
