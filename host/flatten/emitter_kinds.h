@@ -27,12 +27,19 @@ inline bool is_black(const Light &light) { return !(power_of(light, 1) > 0); }
 // The triangles of a mesh that emits; a sphere has none.
 struct EmittingMesh {
     const Mesh &mesh;
+    uint index; // of the mesh
     const Flattening &flattening;
     uint begin, end; // ids of its triangles
     const TriangleSoup &soup;
     const std::vector<uint> &slots; // of each triangle's vertices, by id: block * 8 + place in the block, as in a Hit
     bool uniform_triangles;         // --triangle-choice uniform
 };
+
+// The area of a triangle in flattened units, after rounding.
+inline double triangle_area(const TriangleSoup &soup, uint id) {
+    const auto &[a, b, c] = soup.corners[id];
+    return 0.5 * length(normal_of(soup.vertices[a], soup.vertices[b], soup.vertices[c]));
+}
 
 // Of each emitter of meshes: fills the record and the emitter's rows of tables. Returns the area in flattened units,
 // that of the rounded triangles.

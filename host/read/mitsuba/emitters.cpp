@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 namespace opal::mitsuba {
 
@@ -18,6 +20,16 @@ Color parse_emission(Importer &importer, Object &object, const char *name) {
     const Color color = importer.color(object, name, SpectrumUse::radiance, {1, 1, 1});
     object.check(*std::ranges::min_element(color) >= 0, name, "must not be negative");
     return color;
+}
+
+// The same where it may be a texture, which then multiplies white; 0.5 stands in for one that cannot be read.
+std::pair<Color, std::optional<Texture>> parse_textured_emission(Importer &importer, Object &object, const char *name) {
+    const auto child = object.has(name) ? object.child_named(name) : nullptr;
+    if (!child || child->tag() != "texture")
+        return {parse_emission(importer, object, name), std::nullopt};
+    const std::optional<Texture> &texture = importer.texture(*child);
+    const double grey = texture ? 1 : 0.5;
+    return {Color{grey, grey, grey}, texture};
 }
 
 // Either a property of its own or to_world says it; Mitsuba refuses both together.
@@ -109,7 +121,7 @@ const auto &type_in(Importer &importer, Object &object, const char *parent) {
 
 void parse_area_emitter(Importer &importer, Object &object, Mesh &mesh) {
     type_in(importer, object, "shape");
-    mesh.radiance = parse_emission(importer, object, "radiance");
+    std::tie(mesh.radiance, mesh.texture) = parse_textured_emission(importer, object, "radiance");
     object.finish();
 }
 
