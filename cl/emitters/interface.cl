@@ -67,3 +67,10 @@ static v3 textured_light(const Scene *scene, uints id, uint kind, v3 color, Text
     uints texture = GATHER(uints, scene->emitters, id, .texture);
     return v3_mul(color, texture_color(scene, texture, point, is_emitter(scene, id, kind)));
 }
+
+// Where direction d, away from the light, meets a plane across the axis: 0.5, 0.5 in the middle. x, y: vectors across
+// the axis, over the size of the unit square at distance 1
+static v2 plane_uv(v3 d, v3 axis, v3 x, v3 y) {
+    real depth = v3_dot(d, axis);
+    return v2_of(R(0.5) + v3_dot(d, x) / depth, R(0.5) + v3_dot(d, y) / depth);
+}

@@ -21,14 +21,6 @@ static real angle_between(v3 a, v3 b) {
     return acute ? angle : PI - angle;
 }
 
-// Where the texture is looked up for direction d, away from the light.
-static TexturePoint spot_texture_point(const Scene *scene, uints id, v3 d, v3 axis) {
-    v3 across_x = GATHER_V3(scene->emitters, id, .u.of_spot.across[0]);
-    v3 across_y = GATHER_V3(scene->emitters, id, .u.of_spot.across[1]);
-    real depth = v3_dot(d, axis);
-    return texture_point_at(v2_of(R(0.5) + v3_dot(d, across_x) / depth, R(0.5) + v3_dot(d, across_y) / depth));
-}
-
 static LightSample emitter_spot_sample(const Scene *scene, uints id, v3 color, ReferencePoint from, v2 u, u2 bits) {
     v3 p = GATHER_V3(scene->emitters, id, .u.of_spot.position), to_light = v3_sub(p, from.p);
     real distance2 = v3_dot(to_light, to_light), inverse_distance = rsqrt(distance2);
@@ -42,7 +34,9 @@ static LightSample emitter_spot_sample(const Scene *scene, uints id, v3 color, R
     real share = (smooth ? lowered : cutoff - angle) * GATHER(real, scene->emitters, id, .u.of_spot.inverse_transition);
     share = real_min(real_max(share, (real)(0)), (real)(1));
     real falloff = smooth ? square(square(share)) : share;
-    color = textured_light(scene, id, EMITTER_spot, color, spot_texture_point(scene, id, v3_neg(d), axis));
+    v2 uv = plane_uv(v3_neg(d), axis, GATHER_V3(scene->emitters, id, .u.of_spot.across[0]),
+                     GATHER_V3(scene->emitters, id, .u.of_spot.across[1]));
+    color = textured_light(scene, id, EMITTER_spot, color, texture_point_at(uv));
     return light_sample_of(d, distance2 * inverse_distance, v3_scale(color, falloff * square(inverse_distance)),
                            (real)(1), p, inverse_distance < FAR & falloff > 0);
 }

@@ -15,6 +15,9 @@ namespace opal {
     emitter_##name##_record flattened(const emitter_##name &light, const Flattening &flattening);
 OPAL_SCENE_EMITTERS(OPAL_DECLARE_EMITTER)
 
+// Sets the axes of a projector's image: unit vectors x, along which it goes to the right, and y, to its bottom.
+void store_image_axes(const emitter_projector &light, Vec3 x, Vec3 y, emitter_projector_record &record);
+
 inline void add_extent(const Light &light, Extent &extent) {
     std::visit([&](const auto &own) { add_extent(own, extent); }, light.parameters);
 }

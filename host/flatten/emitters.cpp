@@ -154,10 +154,17 @@ private:
         OPAL_SCENE_EMITTERS(OPAL_STORE_EMITTER)
         double power = power_of(light, radius_);
         if (light.texture) {
-            add_texture(*light.texture, std::get<emitter_spot>(light.parameters), record);
+            std::visit([&](const auto &own) { add_texture(*light.texture, own, record); }, light.parameters);
             power *= mean_luminance(light.texture->texture);
         }
         add(record, power * flattening_.scale * flattening_.scale);
+    }
+
+    template <class Other> void add_texture(const LightTexture &, const Other &, EmitterRecord &) {} // has none
+
+    void add_texture(const LightTexture &own, const emitter_projector &light, EmitterRecord &record) {
+        record.texture = textures_.add(own.texture);
+        store_image_axes(light, own.x, own.y, record.u.of_projector);
     }
 
     void add_texture(const LightTexture &own, const emitter_spot &light, EmitterRecord &record) {
