@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes the scenes of scenes/ and their meshes. Plain Python 3, no dependencies, the same bytes every time.
+"""Writes the scenes of scenes/, their meshes and their images. Plain Python 3, no dependencies, the same bytes every time.
 
-  scripts/make_scenes.py                         write scenes/*.xml and the meshes in scenes/meshes
+  scripts/make_scenes.py                         write scenes/*.xml, scenes/meshes and scenes/textures
   scripts/make_scenes.py --check                 compare them with what is there; exit 1 where they differ
   scripts/make_scenes.py --displaced-sphere N    write scenes/generated/displaced_sphere_N.xml and its mesh of about N triangles
 """
@@ -9,13 +9,13 @@ import argparse
 import pathlib
 import sys
 
-from scenekit import cornell_box, displaced_sphere, eta_study, lights, materials, mitsuba, write
+from scenekit import cornell_box, displaced_sphere, eta_study, images, lights, materials, mitsuba, write
 
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 
 
 def all_files():
-    """{path: text} of everything that is kept in the repository."""
+    """{path: text or bytes} of everything that is kept in the repository."""
     files = {}
     for module in (cornell_box, lights, materials, eta_study):
         for name, (surface, comment) in module.meshes().items():
@@ -46,13 +46,13 @@ def main():
         return write_displaced_sphere(options.displaced_sphere)
     files = all_files()
     if options.check:
-        differing = [str(path) for path, text in files.items() if not path.exists() or path.read_text() != text]
+        differing = [str(path) for path, data in files.items() if not path.exists() or not images.same(path, data)]
         if differing:
             sys.exit("differs from what scripts/make_scenes.py writes: " + ", ".join(differing))
         return None
-    for path, text in files.items():
+    for path, data in files.items():
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
+        path.write_bytes(data.encode() if isinstance(data, str) else data)
     print(f"{len(files)} files, {sum(map(len, files.values())) / 1e3:.0f} kB in {SCENES}")
 
 

@@ -19,17 +19,19 @@ Findings check_tiny(const Sources &sources, unsigned seed);       // the same wi
 Findings check_spheres(const Sources &sources, unsigned seed);    // the same of spheres; rays that leave them
 Findings check_watertight(const Sources &sources, unsigned seed); // rays at edges and vertices of closed meshes
 
-Findings check_warps(const Sources &sources, unsigned seed);           // warp_findings of selftest's warps and two more
-Findings check_bsdfs(const Sources &sources, unsigned seed);           // check_materials of tests/cases/bsdfs
-Findings check_albedos(const Sources &sources, unsigned seed);         // microfacet against quadrature
-Findings check_refraction(const Sources &sources, unsigned seed);      // Snell's law and Fresnel's formulas in double
-Findings check_choices(const Sources &sources, unsigned seed);         // shares of BSDFs' parts, number by number
-Findings check_emitters(const Sources &sources, unsigned seed);        // check_lights of tests/cases/emitters
-Findings check_trigonometry(const Sources &sources, unsigned seed);    // cos_sin_2pi against double
-Findings check_cameras(const Sources &sources, unsigned);              // rays against Mitsuba's, to 1e-5
-Findings check_delta_lights(const Sources &sources, unsigned);         // spots and directional, to 1e-5
-Findings check_sphere_lights(const Sources &sources, unsigned seed);   // from near, far and inside
-Findings check_textured_lights(const Sources &sources, unsigned seed); // samples against rays, alone and together
+Findings check_warps(const Sources &sources, unsigned seed);         // warp_findings of selftest's warps and two more
+Findings check_bsdfs(const Sources &sources, unsigned seed);         // check_materials of tests/cases/bsdfs
+Findings check_facets(const Sources &sources, unsigned seed);        // densities of normals against integrals
+Findings check_albedos(const Sources &sources, unsigned seed);       // microfacet against quadrature
+Findings check_refraction(const Sources &sources, unsigned seed);    // Snell's law and Fresnel's formulas in double
+Findings check_choices(const Sources &sources, unsigned seed);       // shares of BSDFs' parts, number by number
+Findings check_emitters(const Sources &sources, unsigned seed);      // check_lights of tests/cases/emitters
+Findings check_trigonometry(const Sources &sources, unsigned seed);  // cos_sin_2pi against double
+Findings check_cameras(const Sources &sources, unsigned);            // rays against Mitsuba's, to 1e-5
+Findings check_delta_lights(const Sources &sources, unsigned);       // spots and directional, to 1e-5
+Findings check_sphere_lights(const Sources &sources, unsigned seed); // from near, far and inside
+// Samples of lights with textures against rays, alone and together.
+Findings check_textured_lights(const Sources &sources, unsigned seed);
 
 // material_findings of these materials.
 Findings check_materials(const std::vector<Material> &materials, const Sources &sources, unsigned seed);
