@@ -26,7 +26,8 @@ enum {
     EMITTER(point, OPAL_DELTA)      /* a point that emits alike in all directions */ \
     EMITTER(constant, OPAL_INFINITE) /* an environment of one radiance */ \
     EMITTER(spot, OPAL_DELTA)        /* a point that emits into a cone */ \
-    EMITTER(directional, OPAL_DELTA | OPAL_INFINITE) /* parallel light, as that of the sun */
+    EMITTER(directional, OPAL_DELTA | OPAL_INFINITE) /* parallel light, as that of the sun */ \
+    EMITTER(projector, OPAL_DELTA)   /* a point that throws an image onto what is before it */
 
 #define OPAL_EMITTERS(EMITTER) OPAL_MESH_EMITTERS(EMITTER) OPAL_SCENE_EMITTERS(EMITTER)
 
@@ -52,6 +53,15 @@ enum {
 #define OPAL_EMITTER_directional(PARAMETER) \
     PARAMETER(VECTOR, direction, "direction", REQUIRED, ANY, "where the light goes to") \
     PARAMETER(COLOR, irradiance, "irradiance", 1, AT_LEAST(0), "irradiance across the direction, W / m^2")
+
+#define OPAL_EMITTER_projector(PARAMETER) \
+    PARAMETER(POINT, position, "position", REQUIRED, ANY, "position") \
+    PARAMETER(VECTOR, direction, "direction", REQUIRED, ANY, "where its axis points to") \
+    PARAMETER(VECTOR, up, "up", 0, ANY, "where the image's top points to, across the direction; 0 0 0: anywhere") \
+    PARAMETER(COLOR, irradiance, "irradiance", 1, AT_LEAST(0), \
+              "radiance of a white diffuse screen at distance 1, across the axis, W / (m^2 sr)") \
+    PARAMETER(NUMBER, fov, "fov", 40, INSIDE(0, 180), "angle across the image's width, degrees") \
+    PARAMETER(NUMBER, aspect, "aspect", 1, ABOVE(0), "the image's width over its height")
 
 #define OPAL_EMITTER_ENUM(name, traits) EMITTER_##name,
 enum { OPAL_EMITTERS(OPAL_EMITTER_ENUM) EMITTER_COUNT };
@@ -110,6 +120,13 @@ typedef struct {
     float color[3];
     float direction[3];   // unit, where the light goes to
 } emitter_directional_record;
+
+typedef struct {
+    float color[3];           // on the axis
+    float position[3];
+    float direction[3];       // unit
+    float across[2][3];       // the image's axes: vectors across the direction, over its size at distance 1
+} emitter_projector_record;
 
 // One emitter. Lanes read the record of a kind from emitters of another kind too, and drop what they read: a member
 // that is an index into a table must stand before `u`, or be used in the kind's own lanes alone. The members of `u`

@@ -114,7 +114,8 @@ std::string shape_text(const Mesh &mesh) {
 // All of a mesh but its name.
 std::string mesh_text(const Mesh &mesh) {
     return fmt::format("{}, {}{}", shape_text(mesh), bsdf_text(mesh.bsdf),
-                       mesh.radiance ? fmt::format(", emits {} W/(m^2 sr){}", color_text(*mesh.radiance),
+                       mesh.radiance ? fmt::format(", emits {} W/(m^2 sr){}{}", color_text(*mesh.radiance),
+                                                   mesh.texture ? factor_text(*mesh.texture) : "",
                                                    mesh.emits_on_both_sides ? " on both sides" : "")
                                      : "");
 }

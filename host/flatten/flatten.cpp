@@ -223,8 +223,11 @@ void add_bitmaps(Bsdf &bsdf, std::vector<BitmapTexture *> &bitmaps) {
 // All that share pictures.
 std::vector<BitmapTexture *> bitmaps_of(SceneDescription &scene) {
     std::vector<BitmapTexture *> bitmaps;
-    for (Mesh &mesh : scene.meshes)
+    for (Mesh &mesh : scene.meshes) {
         add_bitmaps(mesh.bsdf, bitmaps);
+        if (mesh.texture)
+            add_bitmap(*mesh.texture, bitmaps);
+    }
     for (Light &light : scene.lights)
         if (light.texture)
             add_bitmap(light.texture->texture, bitmaps);

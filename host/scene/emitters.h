@@ -48,8 +48,8 @@ template <class Unused, class... Kinds> using VariantOf = std::variant<Kinds...>
 #define OPAL_EMITTER_ALTERNATIVE(name, traits) , emitter_##name
 using EmitterParameters = VariantOf<void OPAL_SCENE_EMITTERS(OPAL_EMITTER_ALTERNATIVE)>;
 
-// A texture that multiplies the intensity of a spot. Its u grows along x, its v along y, which are unit vectors across
-// the light's direction; its unit square is what the circle of the cutoff angle touches.
+// A texture that multiplies the intensity of a spot or a projector. Its u grows along x, its v along y, which are unit
+// vectors across the light's direction; its unit square is what the circle of the cutoff angle touches, or the image.
 struct LightTexture {
     Texture texture;
     Vec3 x, y;
@@ -58,7 +58,7 @@ struct LightTexture {
 struct Light {
     EmitterParameters parameters;
     SourcePlace place;
-    std::optional<LightTexture> texture{}; // of a spot alone
+    std::optional<LightTexture> texture{}; // of a spot or a projector
 
     uint kind() const { // EMITTER_*
         return std::visit([](const auto &own) { return own.kind; }, parameters);

@@ -185,6 +185,16 @@ TEST_CASE_METHOD(MitsubaFixture, "lights: units, places and directions", "[mitsu
     CHECK(near(normalize(aimed.direction), {0, -1, 0}));
     CHECK(aimed.beam_width == 30);
 
+    const auto projector = light<emitter_projector>("projector");
+    CHECK(near(projector.direction, {0, 0, 1}));
+    CHECK(near(projector.up, {0, 1, 0}));
+    CHECK(projector.irradiance == Color{1, 1, 1});
+    CHECK(projector.fov == Approx(34.02).margin(0.01)); // that of a lens of 50 mm, across a square
+    CHECK(light<emitter_projector>("projector", "<float name='fov' value='40'/>").fov == Approx(40));
+    const auto large = light<emitter_projector>("projector", transform("<scale value='2'/>") + // as Mitsuba has it
+                                                                 "<float name='scale' value='3'/>");
+    CHECK(large.irradiance == Color{6, 6, 6});
+
     CHECK(near(light<emitter_directional>("directional").direction, {0, 0, 1}));
     CHECK(light<emitter_directional>("directional").irradiance == Color{1, 1, 1});
     const auto sun = light<emitter_directional>("directional", "<vector name='direction' value='0 0 -2'/>"
@@ -874,6 +884,19 @@ TEST_CASE_METHOD(MitsubaFixture, "textures of reflectance and opacity", "[mitsub
     CHECK(other.raw);
     CHECK(other.nearest);
     CHECK(other.wrap == WRAP_clamp);
+    const Mesh lamp =
+        shape("sphere", "<emitter type='area'><texture name='radiance' type='bitmap'>" + file + "</texture></emitter>");
+    CHECK(lamp.radiance == Color{1, 1, 1});
+    CHECK(std::get<BitmapTexture>(lamp.texture.value()).picture->width == 2);
+    const auto slides = [&](const std::string &axis) { // of 2 x 2 pixels, as one row is doubled
+        return light<emitter_projector>("projector", "<texture name='irradiance' type='bitmap'>" + file +
+                                                         "</texture><float name='fov' value='40'/>"
+                                                         "<string name='fov_axis' value='" +
+                                                         axis + "'/>");
+    };
+    CHECK(slides("y").aspect == 1);
+    CHECK(slides("y").fov == Approx(40));
+    CHECK(slides("diagonal").fov == Approx(28.8680).margin(1e-3));
     const Bsdf mask = textured_cube("mask", "<texture name='opacity' type='checkerboard'/><bsdf type='diffuse'/>");
     CHECK(mask.as<bsdf_mask_record>().opacity.value == 1.f);
     CHECK(mask.textures.size() == 1);

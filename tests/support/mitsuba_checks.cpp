@@ -276,6 +276,66 @@ const std::vector<KnownSlide> known_slides = {{{0.3, 0.2, 1}, 0.5866026, 0.55773
                                               {{0.1, -1.1, 1}, 0.5288675, 0.18245737},
                                               {{0, 0, 1}, 0.5, 0.5}};
 
+// What a projector along +z of 40 degrees sheds at a point by an image that is white, and by one of 4 x 2 pixels, whose
+// red is 1, 2, 3, 4 and whose green is 1, 2: Mitsuba 3.9.1.
+struct KnownProjection {
+    Vec3 point;
+    double red, green;
+};
+const std::vector<KnownProjection> known_white = {
+    {{0, 0, 1}, 3.141593, 3.141593},    {{0, 0, 2}, 0.785398, 0.785398},
+    {{0.1, 0, 1}, 3.157262, 3.157262},  {{0.2, 0, 1}, 3.203809, 3.203809},
+    {{0.3, 0, 1}, 3.279919, 3.279919},  {{0.2, 0.2, 1}, 3.264839, 3.264839},
+    {{0.6, 0, 2}, 0.81998, 0.81998},    {{0, 0, -1}, 0, 0},
+    {{0.36, 0, 1}, 3.338968, 3.338968}, {{0.37, 0, 1}, 0, 0},
+    {{0, 0.36, 1}, 3.338968, 3.338968}, {{0, 0.37, 1}, 0, 0}};
+// Points of the plane at distance 1, over the half of the image's width there.
+const std::vector<KnownProjection> known_image = {{{0.3, 0.2, 0}, 6.337058, 3.168529},
+                                                  {{-0.3, 0.2, 0}, 9.505587, 3.168529},
+                                                  {{0.9, 0.45, 0}, 3.345656, 3.345656},
+                                                  {{0.9, -0.45, 0}, 3.345656, 6.691313},
+                                                  {{-0.9, 0.45, 0}, 13.382626, 3.345656},
+                                                  {{1.01, 0, 0}, 0, 0},
+                                                  {{0, 0.51, 0}, 0, 0},
+                                                  {{0, 0.99, 0}, 0, 0}};
+
+BitmapTexture steps() {
+    const auto picture = std::make_shared<Picture>();
+    picture->width = 4;
+    picture->height = 2;
+    picture->channels = 3;
+    for (float y : {1.f, 2.f})
+        for (float x : {1.f, 2.f, 3.f, 4.f})
+            for (float value : {x, y, 3.f})
+                picture->floats.push_back(value);
+    return {.picture = picture, .nearest = true};
+}
+
+Findings projector_findings(const Sources &sources, int lanes) {
+    const emitter_projector white{{}, {0, 0, 1}, {0, 1, 0}, {1, 1, 1}, 40, 1};
+    emitter_projector wide = white;
+    wide.aspect = 2;
+    Findings findings;
+    const auto judge = [&](const Light &light, const std::vector<KnownProjection> &known, auto point_of) {
+        KernelProbe probe = probe_of(scene_of_light(light, lanes), lanes, sources);
+        for (const KnownProjection &row : known) {
+            const Vec3 p = point_of(row.point);
+            const Planes seen = probe.light_sample(p, Planes(2 * OPAL_PROBE_PAIRS, 1));
+            const double lit = seen.at(LIGHT_ACTIVE, 0);
+            findings.push_back(exact(
+                fmt::format("a projector at {} {} {}{}", p.x, p.y, p.z, at_width(lanes)),
+                std::abs(lit * seen.at(LIGHT_RADIANCE_R, 0) - row.red) < tolerance * std::max(1.0, row.red) &&
+                    std::abs(lit * seen.at(LIGHT_RADIANCE_G, 0) - row.green) < tolerance * std::max(1.0, row.green)));
+        }
+    };
+    judge({white, {}}, known_white, [](Vec3 p) { return p; });
+    const double half = std::tan(20 * radians);
+    judge({wide, {}, LightTexture{steps(), {-1, 0, 0}, {0, -1, 0}}}, known_image, [&](Vec3 p) {
+        return Vec3{p.x * half, p.y * half, 1};
+    });
+    return findings;
+}
+
 } // namespace
 
 Findings check_delta_lights(const Sources &sources, unsigned) {
@@ -303,6 +363,7 @@ Findings check_delta_lights(const Sources &sources, unsigned) {
                                      std::abs(seen.at(LIGHT_RADIANCE_R, 0) * distance2 - red) < tolerance &&
                                          std::abs(seen.at(LIGHT_RADIANCE_G, 0) * distance2 - green) < tolerance));
         }
+        append(findings, projector_findings(sources, lanes));
         for (const KnownSpot &known : known_spots) {
             const emitter_spot spot{{}, {0, 0, 1}, {1, 1, 1}, known.cutoff, known.beam, false};
             const std::vector<double> found = falloffs(spot, spot_angles, lanes, sources);

@@ -109,6 +109,9 @@ struct Sensor {
 Sensor parse_sensor(Importer &importer, Object &object);
 Sensor default_sensor(); // what Mitsuba's perspective camera is without any property
 
+// The angle across the width of an image, in degrees, of a camera or a projector; width, height: of the image.
+double parse_fov(Object &object, double width, double height);
+
 void parse_film(Importer &importer, Object &object, Camera &camera);
 void parse_filter(Importer &importer, Object &object, Filter &filter);
 void set_default_film(Camera &camera); // 768 x 576 pixels, a Gaussian filter

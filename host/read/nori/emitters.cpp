@@ -80,6 +80,7 @@ void read_names_of_forks(Properties &properties, const std::string &type, emitte
 }
 
 void read_names_of_forks(Properties &, const std::string &, emitter_directional &) {}
+void read_names_of_forks(Properties &, const std::string &, emitter_projector &) {}
 
 // The angle in degrees of a number that is a cosine in some forks and an angle in degrees in others.
 double angle_of(Properties &properties, const std::optional<double> &given, const char *name) {
