@@ -24,6 +24,7 @@
     TABLE(uint, textures, "words of textures")                  /* records of textures/list.h */ \
     TABLE(uint, texels, "words of texels")                      /* bytes and floats of bitmaps */ \
     TABLE(EmitterRecord, emitters, "emitters") \
-    TABLE(LightTriangle, light_triangles, "light triangles")
+    TABLE(LightTriangle, light_triangles, "light triangles") \
+    TABLE(EnvironmentTexel, environment_texels, "texels of the environment")
 
 #endif

@@ -15,6 +15,11 @@ namespace opal {
     emitter_##name##_record flattened(const emitter_##name &light, const Flattening &flattening);
 OPAL_SCENE_EMITTERS(OPAL_DECLARE_EMITTER)
 
+// Fills the table of an environment's texels, and what the record says of it; compensate: may light sampling leave out
+// what is dark (emitter_envmap::mis_compensation)?
+void flatten_map(const emitter_envmap &light, bool compensate, emitter_envmap_record &record,
+                 LargeVector<EnvironmentTexel> &texels);
+
 inline void add_extent(const Light &light, Extent &extent) {
     std::visit([&](const auto &own) { add_extent(own, extent); }, light.parameters);
 }

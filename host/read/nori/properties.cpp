@@ -195,6 +195,16 @@ std::optional<XmlNode> Properties::child(const std::string &tag) {
     return found.empty() ? std::nullopt : std::optional(found[0]);
 }
 
+std::filesystem::path Properties::find_file(const std::string &property, std::string value) const {
+    std::replace(value.begin(), value.end(), '\\', '/');
+    const std::filesystem::path beside = context_.folder / value;
+    std::error_code ignored;
+    for (const std::filesystem::path &candidate : {beside, std::filesystem::path(value)})
+        if (std::filesystem::exists(candidate, ignored))
+            return candidate;
+    fail_at(property, "no such file: " + beside.string() + ", nor " + value + " in the current folder");
+}
+
 void Properties::tell_unfetched(const Property &property) const {
     const std::string type = object_.attribute("type"), place = property.node.place().text();
     const std::string of = type.empty() ? " of <scene>" : fmt::format(" of {} '{}'", known_tag_, type);

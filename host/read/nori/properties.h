@@ -74,6 +74,10 @@ public:
     std::optional<XmlNode> child(const std::string &tag); // at most one; of several, which is a mistake, the first
     std::vector<XmlNode> children(const std::string &tag);
 
+    // The file that the value of a property names: beside the XML file, else in the current folder. Backslashes
+    // separate folders, too. Throws Error at the property if there is none.
+    std::filesystem::path find_file(const std::string &property, std::string value) const;
+
     const XmlNode &object() const { return object_; }
     const ParseContext &context() const { return context_; }
     SourcePlace place_of(const std::string &name) const; // of the property, or of the object if it is missing

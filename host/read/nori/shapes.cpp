@@ -11,17 +11,6 @@ namespace opal {
 
 namespace {
 
-// Finds a file beside the XML file, else in the current folder. Backslashes separate folders, too.
-std::filesystem::path find_file(Properties &properties, std::string name) {
-    std::replace(name.begin(), name.end(), '\\', '/');
-    std::filesystem::path beside = properties.context().folder / name;
-    std::error_code ignored;
-    for (const std::filesystem::path &candidate : {beside, std::filesystem::path(name)})
-        if (std::filesystem::exists(candidate, ignored))
-            return candidate;
-    properties.fail_at("filename", "no such file: " + beside.string() + ", nor " + name + " in the current folder");
-}
-
 // What a mesh has but for its shape.
 struct MeshStart {
     Mesh mesh;
@@ -36,7 +25,7 @@ std::vector<Mesh> parse_file(Properties &properties, MeshStart &start, const std
     std::string name = properties.required(filename, "filename");
     if (start.mesh.name.empty())
         start.mesh.name = name;
-    const std::filesystem::path file = find_file(properties, name);
+    const std::filesystem::path file = properties.find_file("filename", name);
     try {
         return read(file);
     } catch (const Error &error) {

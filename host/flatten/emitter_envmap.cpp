@@ -1,0 +1,154 @@
+#include "flatten/emitter_kinds.h"
+
+#include "flatten/store.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace opal {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+// The least that a texel counts, as a share of the mean texel: however bright the sun is, a dim sky gets its samples.
+// Of these 1 in 256 at most is taken from what is bright.
+constexpr double least_share = 1.0 / 256;
+
+// With less contrast there is nothing to leave out (Mitsuba's bound).
+constexpr double least_contrast = 0.01;
+
+// A map as light sampling sees it: what each texel counts. The device computes the same of the record.
+class Importance {
+public:
+    Importance(const EnvironmentMap &map, bool compensate) : map_(&map) {
+        const std::size_t texels = std::size_t(map.width) * std::size_t(map.height);
+        double sum = 0;
+        float darkest = map.luminance_at(0);
+        for (std::size_t i = 0; i < texels; i++) {
+            const float luminance = map.luminance_at(i);
+            sum += luminance;
+            darkest = std::min(darkest, luminance);
+        }
+        const double mean = sum / double(texels);
+        if (compensate && mean - darkest > least_contrast * mean)
+            subtracted = float(mean);
+        else
+            least = float(mean * least_share);
+    }
+
+    // Of all texels of a row.
+    void row(int y, std::vector<double> &to) const {
+        const int from_pole = std::min(y, map_->height - 1 - y);
+        const double sine = std::sin(pi * from_pole / (map_->height - 1));
+        for (std::size_t x = 0; x < to.size(); x++)
+            to[x] = std::max(map_->luminance_at(std::size_t(y) * to.size() + x) - subtracted, least) * sine;
+    }
+
+    float subtracted = 0, least = 0;
+
+private:
+    const EnvironmentMap *map_;
+};
+
+// Fills colours, and in `accept` what the cell of each texel counts: the mean of its corners. Returns the sum of these.
+double fill_texels(const EnvironmentMap &map, const Importance &importance, LargeVector<EnvironmentTexel> &texels) {
+    const auto width = std::size_t(map.width);
+    std::vector<double> above(width), below(width);
+    texels.resize(width * std::size_t(map.height));
+    importance.row(0, above);
+    double sum = 0;
+    for (int y = 0; y < map.height; y++) {
+        const bool has_cells = y + 1 < map.height;
+        if (has_cells)
+            importance.row(y + 1, below);
+        double row = 0;
+        for (std::size_t x = 0; x < width; x++) {
+            EnvironmentTexel &texel = texels[std::size_t(y) * width + x];
+            std::copy_n(&map.texels[3 * (std::size_t(y) * width + x)], 3, texel.color);
+            const std::size_t right = x + 1 == width ? 0 : x + 1;
+            texel.accept = has_cells ? float((above[x] + above[right] + below[x] + below[right]) / 4) : 0;
+            row += double(texel.accept);
+        }
+        sum += row;
+        std::swap(above, below);
+    }
+    return sum;
+}
+
+// Turns the shares of n cells, over their mean in `accept`, into an alias table, in place and in two walks through it:
+// each cell with less than the mean share is filled up by the next one that has more left than that.
+// Of Vose's table (flatten/distribution.h) 34 million cells would take too much memory and time.
+void build_alias_table_in_place(EnvironmentTexel *cells, uint n, double sum) {
+    const double scale = double(n) / sum;
+    const auto share = [&](uint i) { return double(cells[i].accept) * scale; };
+    const auto next = [&](uint i, bool rich) {
+        while (i < n && (cells[i].other != i || (share(i) > 1) != rich))
+            i++;
+        return i;
+    };
+    for (uint i = 0; i < n; i++)
+        cells[i].other = i;
+    uint poor = next(0, false), rich = next(0, true);
+    double left = rich < n ? share(rich) : 0;
+    while (rich < n) {
+        if (left <= 1) { // it is poor by now
+            const uint other = next(rich + 1, true);
+            if (other == n)
+                break;
+            cells[rich].accept = float(left);
+            cells[rich].other = other;
+            left = share(other) - (1 - left);
+            rich = other;
+        } else {
+            if (poor == n)
+                break;
+            left -= 1 - share(poor);
+            cells[poor].accept = float(share(poor));
+            cells[poor].other = rich;
+            poor = next(poor + 1, false);
+        }
+    }
+    for (uint i = 0; i < n; i++) // up to rounding, what is left has the mean share
+        if (cells[i].other == i)
+            cells[i].accept = 1;
+}
+
+} // namespace
+
+void add_extent(const emitter_envmap &, Extent &) {}
+
+// pi L on the average through each point of the bounding sphere, whose surface is 4 pi radius^2.
+double power_of(const emitter_envmap &light, double radius) {
+    return pi * light.map->mean_luminance * light.scale * 4 * pi * radius * radius;
+}
+
+emitter_envmap_record flattened(const emitter_envmap &light, const Flattening &) {
+    emitter_envmap_record record{};
+    const Transform to_world = orthonormal(light.to_world);
+    for (std::size_t row = 0; row < 3; row++)
+        for (std::size_t axis = 0; axis < 3; axis++)
+            record.to_local[row][axis] = float(to_world.rows[axis][row]);
+    std::ranges::fill(record.color, float(light.scale));
+    record.width = uint(light.map->width);
+    record.height = uint(light.map->height);
+    return record;
+}
+
+void flatten_map(const emitter_envmap &light, bool compensate, emitter_envmap_record &record,
+                 LargeVector<EnvironmentTexel> &texels) {
+    const EnvironmentMap &map = *light.map;
+    Importance importance(map, compensate && light.mis_compensation);
+    double sum = fill_texels(map, importance, texels);
+    if (!(sum > 0)) { // nothing but the poles is brighter than the mean
+        importance = Importance(map, false);
+        sum = fill_texels(map, importance, texels);
+    }
+    const uint cells = record.width * (record.height - 1);
+    build_alias_table_in_place(texels.data(), cells, sum);
+    record.subtracted = importance.subtracted;
+    record.least = importance.least;
+    record.density_scale = float(cells / (2 * pi * pi * sum));
+}
+
+} // namespace opal
