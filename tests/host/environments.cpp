@@ -227,11 +227,11 @@ TEST_CASE_METHOD(EnvironmentFixture, "an envmap of Mitsuba", "[environments]") {
     CHECK(near(full.to_world.vector({0, 0, 1}), {1, 0, 0}));
 
     CHECK(error_in(mitsuba(envmap(file() + "<float name='gamma' value='2'/>")))
-              .starts_with(":2:60: unknown property 'gamma' of emitter 'envmap'"));
+              .starts_with(":2:63: unknown property 'gamma' of emitter 'envmap'"));
     CHECK_THAT(error_in(mitsuba(envmap("<texture name='bitmap' type='bitmap'>" + file() + "</texture>"))),
                Catch::Contains("the emitter lacks its filename"));
     CHECK(error_in(mitsuba(envmap(file() + "<float name='scale' value='-1'/>"))) ==
-          ":2:60: property 'scale': must not be negative");
+          ":2:63: property 'scale': must not be negative");
     CHECK_THAT(error_in(mitsuba(envmap(file("b.exr")))), Catch::StartsWith(":2:24: "));
     scratch.write("b.exr", "no picture");
     CHECK_THAT(error_in(mitsuba(envmap(file("b.exr")))),
