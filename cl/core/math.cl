@@ -42,8 +42,8 @@ static v2 cos_sin_2pi(real u) {
     return v2_of((turn == 1 | turn == 2) ? -cosine : cosine, turn >= 2 ? -sine : sine);
 }
 
-// The angle from the x axis to the point (x, y) as a share of a whole turn, -1/2 to 1/2; 0 at the origin. The polynomial
-// in (y/x)^2 is off by 2e-9 of a turn; atan2 costs more.
+// The angle from the x axis to the point (x, y) as a share of a whole turn, -1/2 to 1/2; 0 at the origin. The
+// polynomial in (y/x)^2 is off by 2e-9 of a turn; atan2 costs more.
 static real turn_of(real y, real x) {
     if (OPAL_DOUBLE) return atan2(y, x) * INV_TWO_PI;
     real across = fabs(x), up = fabs(y);
@@ -65,12 +65,13 @@ static real turn_of(real y, real x) {
 #define FRAME_JUMP R(-0.3719)
 typedef struct { v3 s, t, n; } Frame;
 
-static Frame frame_of(v3 n) {
-    real sign = n.z < FRAME_JUMP ? (real)(-1) : (real)(1);
+static Frame frame_with_jump(v3 n, real jump) {
+    real sign = n.z < jump ? (real)(-1) : (real)(1);
     real a = -1 / (sign + n.z), b = n.x * n.y * a;
     Frame f = {v3_of(1 + sign * n.x * n.x * a, sign * b, -sign * n.x), v3_of(b, sign + n.y * n.y * a, -n.y), n};
     return f;
 }
+static Frame frame_of(v3 n) { return frame_with_jump(n, (real)(FRAME_JUMP)); }
 static v3 to_local(Frame f, v3 v) { return v3_of(v3_dot(v, f.s), v3_dot(v, f.t), v3_dot(v, f.n)); }
 static v3 to_world(Frame f, v3 v) { return v3_mad(f.s, v.x, v3_mad(f.t, v.y, v3_scale(f.n, v.z))); }
 

@@ -26,6 +26,9 @@ typedef struct {
     v3 color[4];
 } EnvironmentCorners;
 
+// The environment, whatever emitter a lane means: sizes in records of other kinds would lead out of the table.
+static uints environment_of(const Scene *scene) { return (uints)(scene->settings->environment); }
+
 static EnvironmentView environment_view(const Scene *scene, uints id) {
     EnvironmentView map = {GATHER_V3(scene->emitters, id, .u.of_envmap.to_local[0]),
                            GATHER_V3(scene->emitters, id, .u.of_envmap.to_local[1]),
@@ -52,7 +55,7 @@ static EnvironmentPlace environment_place(EnvironmentView map, v3 d, real *sine)
     first = first < 0 ? last : first > last ? (ints)(0) : first;
     real row = 2 * turn_of(*sine, y) * to_real(map.height - 1u);
     ints above = to_ints(row), last_above = as_signed(map.height) - 2;
-    above = above < last_above ? above : last_above;
+    above = above < 0 ? 0 : above < last_above ? above : last_above;
     EnvironmentPlace place = {as_unsigned(first), column_after(as_unsigned(first), map.width), as_unsigned(above),
                               column - left, row - to_real(above)};
     return place;
@@ -106,20 +109,21 @@ static EnvironmentDensities environment_densities(const Scene *scene, uints id, 
     return densities;
 }
 
-// A place in [0, 1) whose density is proportional to a at 0, to b at 1, and linear between, by u in [0, 1). Of densities
-// neither squares nor roots leave the range of single precision.
+// A place in [0, 1) whose density is proportional to a at 0, to b at 1, and linear between, by u in [0, 1). The squares
+// of densities stay in the range of single precision.
 static real linear_place(real a, real b, real u) {
     real root = sqrt(real_mixed(a * a, b * b, u));
     return real_min(u * (a + b) / real_max(a + root, (real)(R(1e-30))), (real)(1 - EPSILON));
 }
 
 static LightSample emitter_envmap_sample(const Scene *scene, uints id, v3 color, ReferencePoint from, v2 u, u2 bits) {
+    id = environment_of(scene);
     EnvironmentView map = environment_view(scene, id);
-    // bits.x 2^-32 + bits.y 2^-64 times the number of cells: a cell, and 32 bits of what is left.
+    // bits.x 2^-32 + bits.y 2^-64 times the number of cells: a cell, and of what is left 32 bits, steps of 2^-32.
     uints cells = map.width * (map.height - 1u);
     uints low = bits.x * cells, rest = low + mul_hi(bits.y, cells);
     uints cell = mul_hi(bits.x, cells) + uints_pick(to_mask(rest < low), (uints)(1), (uints)(0));
-    mask kept = to_real(rest) * R(2.3283064365386963e-10) < GATHER(real, scene->environment_texels, cell, .accept);
+    mask kept = to_real(rest) * (GRID_STEP / 256) < GATHER(real, scene->environment_texels, cell, .accept);
     cell = uints_pick(kept, cell, GATHER(uints, scene->environment_texels, cell, .other));
 
     // The quotient of reals may be off by one.
@@ -149,6 +153,7 @@ static LightSample emitter_envmap_sample(const Scene *scene, uints id, v3 color,
 }
 
 static v3 emitter_envmap_radiance(const Scene *scene, uints id, v3 color, v3 d, const Surface *s) {
+    id = environment_of(scene);
     EnvironmentView map = environment_view(scene, id);
     real sine;
     EnvironmentPlace place = environment_place(map, d, &sine);
@@ -156,6 +161,7 @@ static v3 emitter_envmap_radiance(const Scene *scene, uints id, v3 color, v3 d, 
 }
 
 static real emitter_envmap_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, const Surface *s) {
+    id = environment_of(scene);
     EnvironmentView map = environment_view(scene, id);
     real sine;
     EnvironmentPlace place = environment_place(map, d, &sine);

@@ -123,8 +123,12 @@ public:
     }
 
     Decision uv() const {
-        const bool textured = is_textured(description);
-        return {textured, textured ? "a material has a texture" : "no material has a texture"};
+        const bool needed = needs_uv(description);
+        return {needed, needed ? "something on a surface has a texture" : "nothing on a surface has a texture"};
+    }
+
+    Decision tangents() const {
+        return bsdfs([&](uint at) { return (bsdf_traits(scene.bsdfs[at]) & OPAL_TANGENTS) != 0; });
     }
 
     Decision light_textures() const {
@@ -250,7 +254,7 @@ bool general_has(unsigned feature, int lanes) {
 // Features whose scenes have a general kernel of their own, which does not ask at run time.
 bool has_general_kernel(unsigned feature) {
     return feature == FEATURE_endless_paths || feature == FEATURE_hidden_emitters || feature == FEATURE_uv ||
-           feature == FEATURE_light_textures || feature == FEATURE_emitter_envmap;
+           feature == FEATURE_tangents || feature == FEATURE_light_textures || feature == FEATURE_emitter_envmap;
 }
 
 // Features of a second program for all scenes, which serves scenes that have one of these. Scenes of Nori's own kinds

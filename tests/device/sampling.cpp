@@ -29,6 +29,9 @@ TEST_CASE("Warps draw by their densities", "[sampling][stat]") {
 TEST_CASE("BSDFs draw by their densities, weigh by f cos / pdf and are reciprocal", "[sampling][stat]") {
     require_all_pass(check_bsdfs(Sources::embedded(), test_seed(121)));
 }
+TEST_CASE("Normals of facets are drawn by their densities, which integrate to 1", "[sampling][facets][stat]") {
+    require_all_pass(check_facets(Sources::embedded(), test_seed(126)));
+}
 TEST_CASE("Albedos are those of quadrature, and never above 1", "[sampling][stat]") {
     require_all_pass(check_albedos(Sources::embedded(), test_seed(122)));
 }
