@@ -25,6 +25,7 @@
     TABLE(uint, texels, "words of texels")                      /* bytes and floats of bitmaps */ \
     TABLE(float, attributes, "numbers of mesh attributes")      /* of the textures that name them */ \
     TABLE(EmitterRecord, emitters, "emitters") \
-    TABLE(LightTriangle, light_triangles, "light triangles")
+    TABLE(LightTriangle, light_triangles, "light triangles") \
+    TABLE(EnvironmentTexel, environment_texels, "texels of the environment")
 
 #endif

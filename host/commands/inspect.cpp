@@ -60,6 +60,15 @@ std::string value_text(const Color &color) { return color_text(color); }
 [[maybe_unused]] std::string value_text(double number) { return fmt::format("{:g}", number); }
 [[maybe_unused]] std::string value_text(bool flag) { return flag ? "true" : "false"; }
 std::string value_text(Vec3 p) { return fmt::format("{:g} {:g} {:g}", p.x, p.y, p.z); }
+std::string value_text(const std::shared_ptr<const EnvironmentMap> &map) {
+    return fmt::format("of {} x {} pixels", map->width, map->height);
+}
+std::string value_text(const Transform &t) {
+    std::vector<double> numbers;
+    for (std::size_t row = 0; row < 3; row++)
+        numbers.insert(numbers.end(), t.rows[row].begin(), t.rows[row].begin() + 3);
+    return fmt::format("{:.4g}", fmt::join(numbers, " "));
+}
 
 // "position 0 1 0, power 10 10 10"
 std::string parameters_text(Light light) {

@@ -17,6 +17,10 @@ OPAL_SCENE_EMITTERS(OPAL_DECLARE_EMITTER)
 
 // Sets the axes of a projector's image: unit vectors x, along which it goes to the right, and y, to its bottom.
 void store_image_axes(const emitter_projector &light, Vec3 x, Vec3 y, emitter_projector_record &record);
+// Fills the table of an environment's texels, and what the record says of it; compensate: may light sampling leave out
+// what is dark (emitter_envmap::mis_compensation)?
+void flatten_map(const emitter_envmap &light, bool compensate, emitter_envmap_record &record,
+                 LargeVector<EnvironmentTexel> &texels);
 
 inline void add_extent(const Light &light, Extent &extent) {
     std::visit([&](const auto &own) { add_extent(own, extent); }, light.parameters);

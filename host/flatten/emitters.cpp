@@ -84,6 +84,7 @@ private:
     FlatScene &scene_;
     std::vector<uint> slots_;
     std::size_t textured_ = 0;   // meshes that emit by a texture
+    SourcePlace environment_place_;
     std::vector<double> powers_; // of each emitter, W, times the square of the flattening's scale
 
     uint add(const EmitterRecord &record, double power) {
@@ -143,9 +144,11 @@ private:
     void add_light(const Light &light) {
         if (is_environment(light.kind())) {
             if (scene_.settings.environment != OPAL_NONE)
-                throw Error(fmt::format("{}: a second environment: rays that leave the scene meet one only",
-                                        light.place.text()));
+                throw Error(fmt::format("{}: a second environment: rays that leave the scene meet one only; the first "
+                                        "is at {}",
+                                        light.place.text(), environment_place_.text()));
             scene_.settings.environment = uint(scene_.emitters.size());
+            environment_place_ = light.place;
         }
         EmitterRecord record{};
         record.texture = OPAL_UNTEXTURED;
@@ -154,6 +157,9 @@ private:
     if (const auto *own = std::get_if<emitter_##name>(&light.parameters))                                              \
         record.u.of_##name = flattened(*own, flattening_);
         OPAL_SCENE_EMITTERS(OPAL_STORE_EMITTER)
+        if (const auto *map = std::get_if<emitter_envmap>(&light.parameters))
+            flatten_map(*map, description_.strategy[AXIS_lighting] == CHOICE_lighting_mis, record.u.of_envmap,
+                        scene_.environment_texels);
         double power = power_of(light, radius_);
         if (light.texture) {
             std::visit([&](const auto &own) { add_texture(*light.texture, own, record); }, light.parameters);

@@ -45,6 +45,8 @@ struct ParseContext {
     std::optional<Dialect> dialect{}; // nothing: a scene's names tell it
     FileHashes *hashes = nullptr;     // gets those of the files that are read; null: nobody asks
     std::shared_ptr<PictureLoader> pictures = std::make_shared<PictureLoader>(); // of copies of the context, too
+    // The map of an envmap that names no file (opal warp, selftest); null: that is a mistake.
+    std::shared_ptr<const EnvironmentMap> example_map{};
     // Is it an attribute that means nothing in this format, and gets a note? null: there is none.
     bool (*is_leftover)(const XmlNode &node, const std::string &attribute) = nullptr;
 

@@ -4,6 +4,7 @@
 #include "base/color.h"
 #include "base/math.h"
 #include "emitters/list.h"
+#include "scene/environment.h"
 #include "scene/parameters.h"
 #include "scene/place.h"
 #include "scene/textures.h"
@@ -28,6 +29,8 @@ inline bool is_environment(unsigned kind) { return OPAL_IS_ENVIRONMENT(emitter_t
     Vec3 { initial, initial, initial }
 #define OPAL_VALUE_VECTOR(initial)                                                                                     \
     Vec3 { initial, initial, initial }
+#define OPAL_VALUE_IMAGE(initial) std::shared_ptr<const EnvironmentMap>()
+#define OPAL_VALUE_TRANSFORM(initial) Transform()
 
 // The parameters of a kind, as `emitter_point`, and visit_parameters, which calls visit(Parameter, value) for each.
 #define OPAL_VALUE_MEMBER(type, name, xml, initial, range, meaning)                                                    \

@@ -48,6 +48,13 @@ TEST_CASE("Lights with a texture are sampled with the radiance that rays find", 
     require_all_pass(check_textured_lights(Sources::embedded(), test_seed(126)));
 }
 
+TEST_CASE("Environments have Mitsuba's radiance and density", "[sampling][environments]") {
+    require_all_pass(check_environments(Sources::embedded(), 0));
+}
+TEST_CASE("Environments draw by their densities", "[sampling][environments][stat]") {
+    require_all_pass(check_skies(Sources::embedded(), test_seed(126)));
+}
+
 TEST_CASE("A file dropped among the cases is tested, and a wrong one fails", "[sampling]") {
     const ScratchFolder folder;
     folder.write("bright.xml", "<bsdf type='diffuse'><color name='albedo' value='1.1 0.5 0.5'/></bsdf>");

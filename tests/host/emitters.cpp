@@ -172,7 +172,9 @@ TEST_CASE("an environment sheds its power on the scene's bounding sphere, and th
     CHECK(scene.emitters[1].probability == Approx(sky / (sky + luminance(power))));
 
     description.lights.push_back({emitter_constant{bright}, {"a.xml", 7, 1}});
-    CHECK_THAT(test::error_of([&] { flatten(description, 8); }), Catch::StartsWith("a.xml:7:1: a second environment"));
+    description.lights[2].place = {"a.xml", 5, 2};
+    CHECK(test::error_of([&] { flatten(description, 8); }) ==
+          "a.xml:7:1: a second environment: rays that leave the scene meet one only; the first is at a.xml:5:2");
 }
 
 TEST_CASE("a spot's power is the integral of its falloff", "[emitters]") {

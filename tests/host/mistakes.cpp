@@ -150,8 +150,8 @@ TEST_CASE_METHOD(MistakesFixture, "lenient: unknown types get something in their
         check(camera + light + mesh + "<bsdf type='disney'><float name='metallic' value='1'/></bsdf></mesh>",
               ":4:128: unknown bsdf type 'disney'", "a diffuse one of albedo 0.5 stands in for it");
     CHECK(disney.meshes.at(1).bsdf.as<bsdf_diffuse_record>().albedo.value[0] == 0.5f);
-    CHECK(check(camera + light + "<emitter type='envmap'><string name='filename' value='a.exr'/></emitter>",
-                ":4:1: unknown emitter type 'envmap'", "it is left out")
+    CHECK(check(camera + light + "<emitter type='sunsky'><string name='filename' value='a.exr'/></emitter>",
+                ":4:1: unknown emitter type 'sunsky'", "it is left out")
               .lights.empty());
     CHECK_FALSE(check(camera + light + mesh + "<emitter type='laser'/></mesh>", "unknown emitter type 'laser'",
                       "it is left out")

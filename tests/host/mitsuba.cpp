@@ -679,7 +679,7 @@ TEST_CASE_METHOD(MitsubaFixture, "what Opal cannot render is an error with its p
 
 TEST_CASE_METHOD(MitsubaFixture, "plug-ins that Opal does not have are all named in one run", "[mitsuba]") {
     const std::string body = "<shape type='cylinder'/>\n<shape type='cylinder'><bsdf type='plastic'/></shape>\n"
-                             "<bsdf type='plastic' id='b'/>\n<emitter type='envmap'><string name='filename' value='x'/>"
+                             "<bsdf type='plastic' id='b'/>\n<emitter type='sunsky'><string name='filename' value='x'/>"
                              "</emitter>\n<medium type='homogeneous' id='m'/>\n"
                              "<shape type='sphere'><bsdf type='diffuse'><texture name='reflectance' type='volume'>"
                              "<string name='filename' value='x.png'/></texture></bsdf></shape>\n"
@@ -691,7 +691,7 @@ TEST_CASE_METHOD(MitsubaFixture, "plug-ins that Opal does not have are all named
         ":3:24: unknown bsdf type 'plastic' (2 in the scene); available: diffuse, dielectric, conductor, twosided, "
         "mask, "
         "null\n"
-        ":5:1: unknown emitter type 'envmap'; available: area, point, spot, directional, constant\n"
+        ":5:1: unknown emitter type 'sunsky'; available: area, point, spot, directional, constant, envmap\n"
         ":6:1: unknown medium type 'homogeneous'; available: none\n"
         ":7:43: unknown texture type 'volume'; available: checkerboard, bitmap, mesh_attribute\n"
         ":8:1: unknown integrator type 'ptracer'; available: path, volpath, volpathmis, direct, moment, aov\n"

@@ -344,6 +344,20 @@ std::vector<Mesh> textured_lights() {
     return lights;
 }
 
+// A map of random colours over four decades, one texel of which is that much brighter.
+std::shared_ptr<const EnvironmentMap> random_map(int width, int height, float sun, unsigned seed) {
+    std::mt19937 random(seed);
+    Picture picture;
+    picture.width = width;
+    picture.height = height;
+    picture.channels = 3;
+    for (int i = 0; i < 3 * width * height; i++)
+        picture.floats.push_back(std::exp2(float(random() % 1000) / 75));
+    for (size_t channel = 0; channel < 3 && sun > 0; channel++)
+        picture.floats[3 * size_t(width * (height / 2) + width / 2) + channel] = sun;
+    return environment_of(std::move(picture), "random");
+}
+
 } // namespace
 
 Findings check_textured_lights(const Sources &sources, unsigned seed) {
@@ -358,6 +372,30 @@ Findings check_textured_lights(const Sources &sources, unsigned seed) {
     for (size_t i = 0; i < lights.size(); i++)
         check("textured light " + std::to_string(i), {lights[i]});
     check("all textured lights", lights);
+    return findings;
+}
+
+Findings check_skies(const Sources &sources, unsigned seed) {
+    struct Sky {
+        const char *name;
+        int width, height;
+        float sun;
+        Transform to_world;
+    };
+    const Transform turned = Transform::rotate({1, 2, -1}, 77);
+    const std::vector<Sky> skies = {{"one texel", 1, 1, 0, {}},
+                                    {"one row", 5, 1, 0, turned},
+                                    {"two rows", 3, 2, 0, {}},
+                                    {"one column", 1, 6, 0, turned},
+                                    {"7 x 5 texels, mirrored", 7, 5, 0, turned * Transform::scale({-1, 1, 1})},
+                                    {"16 x 9 texels with a sun", 16, 9, 1e6f, turned}};
+    Findings findings;
+    for (const Sky &sky : skies) {
+        emitter_envmap light;
+        light.map = random_map(sky.width, sky.height, sky.sun, ++seed);
+        light.to_world = sky.to_world;
+        append(findings, check_light(sky.name, {light, {}}, sources, seed++));
+    }
     return findings;
 }
 

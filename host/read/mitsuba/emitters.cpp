@@ -1,5 +1,6 @@
 // Parsers of emitters. Area lights are children of a shape, others of the scene.
 #include "base/log.h"
+#include "read/environment.h"
 #include "read/mitsuba/parsers.h"
 
 #include <fmt/format.h>
@@ -130,6 +131,27 @@ EmitterParameters parse_constant(Importer &importer, Object &object) {
     return emitter_constant{.radiance = parse_emission(importer, object, "radiance")};
 }
 
+EmitterParameters parse_envmap(Importer &importer, Object &object) {
+    emitter_envmap light;
+    light.scale = object.number("scale").value_or(1);
+    object.check(light.scale >= 0, "scale", "must not be negative");
+    light.to_world = object.transform("to_world").value_or(Transform());
+    warn_of_scale(light.to_world, object.place_of("to_world"));
+    light.mis_compensation = object.boolean("mis_compensation").value_or(false);
+    const auto file = object.file("filename");
+    if (!object.has("filename"))
+        object.mistake("the emitter lacks its filename: <string name=\"filename\" value=\"a.exr\"/>");
+    if (!file)
+        throw NoObject{};
+    try {
+        light.map = read_environment(*file, importer.context().hashes);
+    } catch (const Error &error) {
+        importer.lacks(object, "filename", error.what(), "the emitter is left out");
+        throw NoObject{};
+    }
+    return light;
+}
+
 const char *const area = "area";
 
 // area: without a parser, a child of a shape.
@@ -140,6 +162,7 @@ const std::vector<Plugin<EmitterParameters (*)(Importer &, Object &)>> emitter_t
     {"directional", "directional", parse_directional},
     {"projector", "projector", parse_projector},
     {"constant", "constant", parse_constant},
+    {"envmap", "envmap", parse_envmap},
 };
 
 // Of a type that Opal has, in the place where it stands. Else throws NoObject.
@@ -167,7 +190,13 @@ void parse_area_emitter(Importer &importer, Object &object, Mesh &mesh) {
 
 Light parse_scene_emitter(Importer &importer, Object &object) {
     const auto &type = type_in(importer, object, "scene");
-    Light light{type.parse(importer, object), object.place()};
+    std::optional<EmitterParameters> parameters;
+    importer.context().attempt(object, [&] { parameters = type.parse(importer, object); });
+    if (!parameters) {
+        object.finish();
+        throw NoObject{};
+    }
+    Light light{std::move(*parameters), object.place()};
     if (const auto *spot = std::get_if<emitter_spot>(&light.parameters)) {
         light.texture = parse_light_texture(importer, object);
         object.check(!light.texture || spot->cutoff_angle < 90, "cutoff_angle",

@@ -42,6 +42,8 @@ void read_parameter(Properties &properties, const Parameter &parameter, std::spa
     case ParameterType::BSDF:
     case ParameterType::POINT:
     case ParameterType::VECTOR:
+    case ParameterType::IMAGE:
+    case ParameterType::TRANSFORM:
         break;
     case ParameterType::COLOR:
         if (const auto color = properties.color(parameter.xml_name))
