@@ -196,7 +196,7 @@ FlatScene flatten(const SceneDescription &description, int lanes, bool with_face
     fill_film(description.camera, scene.settings);
     fill_strategy(description, flattening, scene.settings);
     TriangleSoup soup = gather_primitives(description, flattening, scene, on_gathered);
-    TextureGatherer textures(scene.textures, scene.texels, soup.attributes);
+    TextureGatherer textures(scene.textures, soup.attributes);
     gather_bsdfs(description, textures, scene);
     build_acceleration(soup, light_points(description, flattening, soup, scene.triangles),
                        with_face_list && lanes >= FACE_LIST_LANES, description.strategy.is_general(), scene);

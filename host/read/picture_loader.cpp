@@ -1,5 +1,7 @@
 #include "read/picture_loader.h"
 
+#include "base/error.h"
+
 #include <algorithm>
 #include <system_error>
 #include <utility>
