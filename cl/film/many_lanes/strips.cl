@@ -11,13 +11,13 @@
 #include "shared/types.h"
 
 enum {
-    STRIP = OPAL_STRIP_VECTORS * LANES,                               // pixels across
-    AROUND = (2 * OPAL_STRIP_REACH + LANES - 1) / LANES * LANES,      // at least those that the filter reaches beside it
+    STRIP = OPAL_STRIP_VECTORS * LANES,                          // pixels across
+    AROUND = (2 * OPAL_STRIP_REACH + LANES - 1) / LANES * LANES, // at least those that it reaches beside the strip
     STRIP_WEIGHTS = 2 * OPAL_STRIP_REACH + 1
 };
 
-// A sample of each pixel of a row, from `across` pixels left of the strip on: its colour, and its weights for the pixels
-// around it, along x and along y; all 0 where the sample does not count.
+// A sample of each pixel of a row, from `across` pixels left of the strip on: its colour, and its weights along x and
+// along y for the pixels around it. Colour and weights along y are 0 where the sample does not count.
 typedef struct {
     real1 color[3][STRIP + AROUND], x[STRIP_WEIGHTS][STRIP + AROUND], y[STRIP_WEIGHTS][STRIP + AROUND];
 } SampleRow;
