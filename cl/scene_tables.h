@@ -23,7 +23,9 @@
     TABLE(uint, bsdfs, "words of bsdfs")                        /* records of bsdfs/list.h; equal ones are shared */ \
     TABLE(uint, textures, "words of textures")                  /* records of textures/list.h */ \
     TABLE(uint, texels, "words of texels")                      /* bytes and floats of bitmaps */ \
+    TABLE(float, attributes, "numbers of mesh attributes")      /* of the textures that name them */ \
     TABLE(EmitterRecord, emitters, "emitters") \
-    TABLE(LightTriangle, light_triangles, "light triangles")
+    TABLE(LightTriangle, light_triangles, "light triangles") \
+    TABLE(EnvironmentTexel, environment_texels, "texels of the environment")
 
 #endif

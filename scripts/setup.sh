@@ -7,7 +7,8 @@ packages=(
     g++ cmake ninja-build python3                                # to build
     ocl-icd-opencl-dev opencl-headers opencl-clhpp-headers       # OpenCL's loader and headers
     pocl-opencl-icd                                              # an OpenCL device: the CPU
-    libopenexr-dev libpng-dev zlib1g-dev libpugixml-dev          # images and XML
+    libopenexr-dev libpng-dev libjpeg62-turbo-dev zlib1g-dev     # images
+    libpugixml-dev                                               # XML
     libtinyobjloader-dev                                         # meshes
     libfmt-dev nlohmann-json3-dev libxxhash-dev                  # text, JSON, hashes
     catch2                                                       # tests

@@ -42,6 +42,22 @@ static v2 cos_sin_2pi(real u) {
     return v2_of((turn == 1 | turn == 2) ? -cosine : cosine, turn >= 2 ? -sine : sine);
 }
 
+// The angle from the x axis to the point (x, y) as a share of a whole turn, -1/2 to 1/2; 0 at the origin. The
+// polynomial in (y/x)^2 is off by 2e-9 of a turn; atan2 costs more.
+static real turn_of(real y, real x) {
+    if (OPAL_DOUBLE) return atan2(y, x) * INV_TWO_PI;
+    real across = fabs(x), up = fabs(y);
+    mask steep = up > across;
+    real most = steep ? up : across, q = (steep ? across : up) / (most > 0 ? most : (real)(1)), q2 = q * q;
+    real s = mul_add(q2, (real)(R(4.510553421e-04)), (real)(R(-2.547279719e-03)));
+    s = mul_add(q2, mul_add(q2, s, (real)(R(6.778028242e-03))), (real)(R(-1.192937193e-02)));
+    s = mul_add(q2, mul_add(q2, s, (real)(R(1.692891993e-02))), (real)(R(-2.260409302e-02)));
+    s = mul_add(q2, mul_add(q2, s, (real)(R(3.181902586e-02))), (real)(R(-5.305122347e-02)));
+    real turn = q * mul_add(q2, s, (real)(R(1.591549406e-01)));
+    turn = steep ? R(0.25) - turn : turn;
+    return turned_as(x < 0 ? R(0.5) - turn : turn, y);
+}
+
 // An orthonormal frame around the unit vector n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited"). Their
 // frame jumps where n.z changes sign. On upright walls the last bit decides that, so that each precision and device
 // turned the same random numbers differently. Here it jumps at FRAME_JUMP, a height that hardly any surface has; 1 /
@@ -67,7 +83,7 @@ static v3 reflect_z(v3 w) { return v3_of(-w.x, -w.y, w.z); }
 // Luminance of linear RGB (ITU-R BT.709).
 static real luminance(v3 c) { return R(0.212671) * c.x + R(0.715160) * c.y + R(0.072169) * c.z; }
 
-#define float_bits(x) CAT(as_, WIDE(uint))(CAT(convert_, WIDE(float))(x))
+#define float_bits(x) CAT(as_, WIDE(uint))(to_floats(x))
 
 // Are all three finite? Exponent bits are compared, because fast math removes isfinite().
 static mask is_finite(v3 c) {

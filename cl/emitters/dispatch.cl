@@ -7,6 +7,8 @@
 #include "scene.cl"
 #include "shared/types.h"
 #include "surface.cl"
+#include "textures/dispatch.cl"
+#include "textures/interface.cl"
 
 #define COUNT_EMITTER(name, traits) +OPAL_HAS_emitter_##name
 #define COUNT_MET(name, traits) +(OPAL_HAS_emitter_##name && OPAL_CAN_BE_MET(traits))
@@ -56,6 +58,9 @@ static LightSample emitter_sample(const Scene *scene, uints id, ReferencePoint f
 static v3 emitter_radiance(const Scene *scene, uints id, v3 d, const Surface *s, mask active) {
     v3 radiance = v3_all((real)(0)), color = GATHER_V3(scene->emitters, id, .u.color);
     uints kind = emitter_kind(scene, id);
+    if (OPAL_HAS_light_textures && OPAL_HAS_uv)
+        color = v3_mul(color, texture_color(scene, GATHER(uints, scene->emitters, id, .texture), texture_point_of(s),
+                                            active));
 #define RADIANCE_OF_EMITTER(name, traits) \
     if (OPAL_HAS_emitter_##name && OPAL_CAN_BE_MET(traits)) { \
         mask m = emitter_lanes(kind, EMITTER_##name, MET_KINDS, active); \

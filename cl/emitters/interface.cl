@@ -5,7 +5,7 @@
 //                                          radiance that a ray of direction d (unit) finds; 0 for delta lights
 //   real emitter_NAME_pdf(scene, id, from, d, s)
 //                                          density of _sample at d, solid angle measure, 1/sr; 0 for delta lights
-// color: that of the record. u: a pair of random numbers in [0, 1); bits: a pair of random words, for choices among
+// color: that of the record; of lights on surfaces _radiance gets it times their texture. u: a pair of random numbers in [0, 1); bits: a pair of random words, for choices among
 // many. s: the surface that the ray met; of lights that are infinitely far nothing.
 // Functions compute all lanes; their callers pick those that are meant, but all lanes of a LightSample are finite.
 // _radiance and _pdf of delta lights are never called.
@@ -13,6 +13,8 @@
 #include "core/math.cl"
 #include "scene.cl"
 #include "surface.cl"
+#include "textures/dispatch.cl"
+#include "textures/interface.cl"
 
 // The point from which light is seen. Lengths are those of the flattened scene.
 typedef struct {
@@ -52,4 +54,23 @@ static LightSample light_sample_pick(mask m, LightSample yes, LightSample no) {
                      m ? yes.inverse_pdf : no.inverse_pdf, v3_pick(m, yes.end, no.end), m ? yes.active : no.active,
                      m ? yes.discrete : no.discrete, m ? yes.infinite : no.infinite};
     return s;
+}
+
+// The lanes whose emitter `id` is of that kind (EMITTER_*). dispatch.cl knows the lanes that are meant.
+static mask is_emitter(const Scene *scene, uints id, uint kind) {
+    return to_mask(GATHER(uints, scene->emitters, id, .kind) == kind);
+}
+
+// `color` times the texture of the emitters `id` of that kind at `point`, in kernels whose lights have textures.
+static v3 textured_light(const Scene *scene, uints id, uint kind, v3 color, TexturePoint point) {
+    if (!OPAL_HAS_light_textures) return color;
+    uints texture = GATHER(uints, scene->emitters, id, .texture);
+    return v3_mul(color, texture_color(scene, texture, point, is_emitter(scene, id, kind)));
+}
+
+// Where direction d, away from the light, meets a plane across the axis: 0.5, 0.5 in the middle. x, y: vectors across
+// the axis, over the size of the unit square at distance 1
+static v2 plane_uv(v3 d, v3 axis, v3 x, v3 y) {
+    real depth = v3_dot(d, axis);
+    return v2_of(R(0.5) + v3_dot(d, x) / depth, R(0.5) + v3_dot(d, y) / depth);
 }

@@ -26,7 +26,9 @@ enum {
     EMITTER(point, OPAL_DELTA)      /* a point that emits alike in all directions */ \
     EMITTER(constant, OPAL_INFINITE) /* an environment of one radiance */ \
     EMITTER(spot, OPAL_DELTA)        /* a point that emits into a cone */ \
-    EMITTER(directional, OPAL_DELTA | OPAL_INFINITE) /* parallel light, as that of the sun */
+    EMITTER(directional, OPAL_DELTA | OPAL_INFINITE) /* parallel light, as that of the sun */ \
+    EMITTER(projector, OPAL_DELTA)   /* a point that throws an image onto what is before it */ \
+    EMITTER(envmap, OPAL_INFINITE)   /* an environment whose radiance is an image */
 
 #define OPAL_EMITTERS(EMITTER) OPAL_MESH_EMITTERS(EMITTER) OPAL_SCENE_EMITTERS(EMITTER)
 
@@ -52,6 +54,22 @@ enum {
 #define OPAL_EMITTER_directional(PARAMETER) \
     PARAMETER(VECTOR, direction, "direction", REQUIRED, ANY, "where the light goes to") \
     PARAMETER(COLOR, irradiance, "irradiance", 1, AT_LEAST(0), "irradiance across the direction, W / m^2")
+
+#define OPAL_EMITTER_projector(PARAMETER) \
+    PARAMETER(POINT, position, "position", REQUIRED, ANY, "position") \
+    PARAMETER(VECTOR, direction, "direction", REQUIRED, ANY, "where its axis points to") \
+    PARAMETER(VECTOR, up, "up", 0, ANY, "where the image's top points to, across the direction; 0 0 0: anywhere") \
+    PARAMETER(COLOR, irradiance, "irradiance", 1, AT_LEAST(0), \
+              "radiance of a white diffuse screen at distance 1, across the axis, W / (m^2 sr)") \
+    PARAMETER(NUMBER, fov, "fov", 40, INSIDE(0, 180), "angle across the image's width, degrees") \
+    PARAMETER(NUMBER, aspect, "aspect", 1, ABOVE(0), "the image's width over its height")
+
+#define OPAL_EMITTER_envmap(PARAMETER) \
+    PARAMETER(IMAGE, map, "filename", REQUIRED, ANY, "its radiance, W / (m^2 sr), in all directions") \
+    PARAMETER(NUMBER, scale, "scale", 1, AT_LEAST(0), "what multiplies the radiance") \
+    PARAMETER(TRANSFORM, to_world, "toWorld", 0, ANY, "turns it, mirrors it; lengths mean nothing") \
+    PARAMETER(FLAG, mis_compensation, "misCompensation", false, ANY, \
+              "whether light sampling, where BSDF sampling helps it, leaves out what is darker than the mean")
 
 #define OPAL_EMITTER_ENUM(name, traits) EMITTER_##name,
 enum { OPAL_EMITTERS(OPAL_EMITTER_ENUM) EMITTER_COUNT };
@@ -111,6 +129,21 @@ typedef struct {
     float direction[3];   // unit, where the light goes to
 } emitter_directional_record;
 
+typedef struct {
+    float color[3];           // on the axis
+    float position[3];
+    float direction[3];       // unit
+    float across[2][3];       // the image's axes: vectors across the direction, over its size at distance 1
+} emitter_projector_record;
+
+typedef struct {
+    float color[3];           // what multiplies the map
+    float to_local[3][3];     // the axes of the map in world space, unit: +y leads to its first row
+    uint width, height;       // texels
+    float subtracted, least;  // a texel counts as max(luminance - subtracted, least) times the sine of its angle to y
+    float density_scale;      // 1 / (2 pi^2 times the mean of that over the unit square)
+} emitter_envmap_record;
+
 // One emitter. Lanes read the record of a kind from emitters of another kind too, and drop what they read: a member
 // that is an index into a table must stand before `u`, or be used in the kind's own lanes alone. The members of `u`
 // have a prefix, as "constant" is a keyword.
@@ -138,6 +171,15 @@ typedef struct {
     float inverse_pdf;    // 1 / pdf of a point on it, area measure, given the light: area / probability of choosing it
 } LightTriangle;
 OPAL_SIZE_CHECK(LightTriangle, 16);
+
+// A texel of an environment's map, and the alias table's row of the cell between this texel and its neighbours to the
+// right (the first one after the last) and below. Of the last row, which has no cells below, the colour alone counts.
+typedef struct {
+    float color[3];       // radiance, W / (m^2 sr), before EmitterRecord's colour multiplies it
+    float accept;
+    uint other;
+} EnvironmentTexel;
+OPAL_SIZE_CHECK(EnvironmentTexel, 20);
 
 #ifdef __cplusplus
 }

@@ -9,6 +9,7 @@
 #include "scene.cl"
 #include "shapes/triangle.cl"
 #include "surface.cl"
+#include "textures/interface.cl"
 
 static LightSample emitter_mesh_sample(const Scene *scene, uints id, v3 color, ReferencePoint from, v2 u, u2 bits) {
     uints first = GATHER(uints, scene->emitters, id, .first), count = GATHER(uints, scene->emitters, id, .count), row;
@@ -21,7 +22,12 @@ static LightSample emitter_mesh_sample(const Scene *scene, uints id, v3 color, R
     v3 p0 = triangle_vertex(scene, slot, 0), p1 = triangle_vertex(scene, slot, 1), p2 = triangle_vertex(scene, slot, 2);
     v3 e1 = v3_sub(p1, p0), e2 = v3_sub(p2, p0);
     v3 normal = v3_normalize(v3_cross(e1, e2));
-    v3 shading = shading_normal(scene, corner_normals(scene, triangle_id(scene, slot)), b1, b2, normal);
+    uints triangle = triangle_id(scene, slot);
+    v3 shading = shading_normal(scene, corner_normals(scene, triangle), b1, b2, normal);
+    if (OPAL_HAS_light_textures && OPAL_HAS_uv) {
+        v2 uv = triangle_uv(corner_uvs(scene, triangle), b1, b2);
+        color = textured_light(scene, id, EMITTER_mesh, color, texture_point(uv, b1, b2, triangle));
+    }
     return sample_of_point(from, v3_mad(e1, b1, v3_mad(e2, b2, p0)), normal, shading, emits_on_both_sides(scene, id),
                            GATHER(real, scene->light_triangles, row, .inverse_pdf), ray_offset_of(p0, p1, p2), color);
 }

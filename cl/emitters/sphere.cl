@@ -9,6 +9,7 @@
 #include "scene.cl"
 #include "shapes/sphere.cl"
 #include "surface.cl"
+#include "textures/interface.cl"
 
 // A sphere as a reference point sees it.
 typedef struct {
@@ -56,6 +57,12 @@ static LightSample emitter_sphere_sample(const Scene *scene, uints id, v3 color,
     real half_chord = safe_sqrt((view.radius - across) * (view.radius + across));
     v3 nearest = v3_scale(v3_of(cosine * turn.x, cosine * turn.y, -sine), across);
     v3 outward = to_world(frame, v3_normalize(v3_mad(d, view.inside ? half_chord : -half_chord, nearest)));
+    if (OPAL_HAS_light_textures && OPAL_HAS_uv) {
+        uints sphere = GATHER(uints, scene->emitters, id, .u.of_sphere.sphere);
+        sphere = uints_pick(is_emitter(scene, id, EMITTER_sphere), sphere, (uints)(0));
+        TexturePoint point = texture_point_at(sphere_uv(sphere_point(scene, sphere, outward)));
+        color = textured_light(scene, id, EMITTER_sphere, color, point);
+    }
     real leaves = view.distance * cosine + half_chord;
     real enters = (view.distance - view.radius) * (view.distance + view.radius) / leaves;
     real offset = sphere_offset_of(view.center, view.radius) + SHADOW_END_ROUNDINGS * EPSILON * view.distance;

@@ -10,7 +10,6 @@
 #include "emitters/interface.cl"
 #include "scene.cl"
 #include "surface.cl"
-#include "textures/dispatch.cl"
 #include "textures/interface.cl"
 
 // The angle between two unit vectors. The arc cosine would lose half of the digits near 0 and pi.
@@ -20,15 +19,6 @@ static real angle_between(v3 a, v3 b) {
     mask acute = difference2 < sum2;
     real angle = 2 * asin(R(0.5) * sqrt(acute ? difference2 : sum2)); // of a and b, or of a and -b
     return acute ? angle : PI - angle;
-}
-
-// What the texture says of direction d, away from the light: 1 where there is none.
-static v3 spot_texture(const Scene *scene, uints id, v3 d, v3 axis, mask active) {
-    v3 across_x = GATHER_V3(scene->emitters, id, .u.of_spot.across[0]);
-    v3 across_y = GATHER_V3(scene->emitters, id, .u.of_spot.across[1]);
-    real depth = v3_dot(d, axis);
-    v2 uv = v2_of(R(0.5) + v3_dot(d, across_x) / depth, R(0.5) + v3_dot(d, across_y) / depth);
-    return texture_color(scene, GATHER(uints, scene->emitters, id, .texture), texture_point_at(uv), active);
 }
 
 static LightSample emitter_spot_sample(const Scene *scene, uints id, v3 color, ReferencePoint from, v2 u, u2 bits) {
@@ -44,7 +34,9 @@ static LightSample emitter_spot_sample(const Scene *scene, uints id, v3 color, R
     real share = (smooth ? lowered : cutoff - angle) * GATHER(real, scene->emitters, id, .u.of_spot.inverse_transition);
     share = real_min(real_max(share, (real)(0)), (real)(1));
     real falloff = smooth ? square(square(share)) : share;
-    if (OPAL_HAS_light_textures) color = v3_mul(color, spot_texture(scene, id, v3_neg(d), axis, falloff > 0));
+    v2 uv = plane_uv(v3_neg(d), axis, GATHER_V3(scene->emitters, id, .u.of_spot.across[0]),
+                     GATHER_V3(scene->emitters, id, .u.of_spot.across[1]));
+    color = textured_light(scene, id, EMITTER_spot, color, texture_point_at(uv));
     return light_sample_of(d, distance2 * inverse_distance, v3_scale(color, falloff * square(inverse_distance)),
                            (real)(1), p, inverse_distance < FAR & falloff > 0);
 }

@@ -21,17 +21,20 @@ static Sum sum_add(Sum s, real x, mask valid) {
     return r;
 }
 
-// LANES pixels of a band from its pixel `first` on. Lanes beyond the band's last pixel repeat it and are not stored.
+// LANES consecutive pixels of a band, from its pixel `first` on. Only the lanes from `begin` to `end` are of the band;
+// the others repeat one of its pixels and are not stored.
 typedef struct {
     uints pixel;
-    uint first, pixels; // `pixels`: of the band
-    bool empty;         // nothing was added to the band yet, and its memory holds anything
+    int first, begin, end;
+    uint pixels; // of the band
+    bool empty;  // nothing was added to the band yet, and its memory holds anything
 } FilmPlace;
 
-static FilmPlace film_place(uint pixels, uint empty) {
-    FilmPlace at = {(uints)(0), (uint)get_global_id(0) * LANES, pixels, empty != 0};
+// lanes: how many are in the film
+static FilmPlace film_place(int first, int lanes, uint pixels, uint empty) {
+    FilmPlace at = {(uints)(0), first, max(-first, 0), min(min(lanes, LANES), (int)pixels - first), pixels, empty != 0};
     uint index[LANES];
-    for (uint lane = 0; lane < LANES; lane++) index[lane] = min(at.first + lane, pixels - 1);
+    for (int lane = 0; lane < LANES; lane++) index[lane] = (uint)clamp(first + lane, 0, (int)pixels - 1);
     at.pixel = LOAD(uints, index);
     return at;
 }
@@ -49,9 +52,9 @@ static void film_store(global float *film, FilmPlace at, uint plane, uint low, S
     real1 hi[LANES], lo[LANES];
     STORE(s.hi, hi);
     STORE(s.lo, lo);
-    for (uint lane = 0; lane < LANES && at.first + lane < at.pixels; lane++) {
+    for (int lane = at.begin; lane < at.end; lane++) {
         float high = (float)hi[lane]; // what a double has beyond this float goes into the low part
-        film[(ulong)plane * at.pixels + at.first + lane] = high;
-        film[(ulong)low * at.pixels + at.first + lane] = (float)(lo[lane] + (hi[lane] - high));
+        film[(ulong)plane * at.pixels + (uint)(at.first + lane)] = high;
+        film[(ulong)low * at.pixels + (uint)(at.first + lane)] = (float)(lo[lane] + (hi[lane] - high));
     }
 }

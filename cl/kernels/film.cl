@@ -1,8 +1,12 @@
 // film: the kernels of the film. They are a program of their own, whose text is the same for all scenes.
 #include "film/gather.cl"
+#include "film/samples.cl"
 #include "kernels/queue.cl"
 #include "shared/film.h"
 #include "shared/types.h"
+#if LANES > 1
+#include "film/many_lanes/strips.cl"
+#endif
 
 // Marks the samples of items that were not rendered (an interrupted pass) as empty.
 kernel void clear(global const Settings *settings, global float *samples, uint first_item, uint items, uint tile_width,
@@ -13,7 +17,7 @@ kernel void clear(global const Settings *settings, global float *samples, uint f
         for (uint x = q.left; x < q.right; x++)
             for (uint s = 0; s < q.samples; s++) {
                 uint pixel = (y - settings->film.top) * settings->film.width + (x - settings->film.left);
-                ulong sample = (ulong)pixel * pass_samples + (q.first_sample - pass_first) + s;
-                samples[OPAL_SAMPLE_FLOATS * sample] = as_float(OPAL_SAMPLE_EMPTY);
+                uint sample = q.first_sample - pass_first + s;
+                samples[SAMPLE_WORD(pixel, sample, pass_samples)] = as_float(OPAL_SAMPLE_EMPTY);
             }
 }

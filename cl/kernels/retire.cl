@@ -1,5 +1,6 @@
 // retire: finished paths leave their samples in the memory of the pass.
 #include "core/lanes.cl"
+#include "film/samples.cl"
 #include "integrators/steps.cl"
 #include "kernels/queue.cl"
 #include "scene.cl"
@@ -20,13 +21,24 @@ static uints film_pixel(global const Settings *settings, uints pixel) {
 // Stores the radiance of the `ended` paths, a bit each, as finished samples. In counting builds the sample of the first
 // one gets counters instead: the rays, shadow rays and rounds since a path ended before; the others get 0.
 static void retire(const Scene *scene, global float *samples, const Queue *queue, const Path *path, uint ended) {
-    uint place[LANES];
-    real1 r[LANES], g[LANES], b[LANES];
+    v3 light = path->radiance;
+    uint samples_of_pixel = queue->pass_samples, step = SAMPLE_CHANNEL(1, samples_of_pixel);
     uints pixel = film_pixel(scene->settings, path->sampler.pixel);
-    STORE(pixel * queue->pass_samples + (path->sampler.sample - queue->pass_first), place);
-    STORE(path->radiance.x, r);
-    STORE(path->radiance.y, g);
-    STORE(path->radiance.z, b);
+    uints word = SAMPLE_WORD(pixel, path->sampler.sample - queue->pass_first, samples_of_pixel);
+    uint place[LANES];
+    STORE(word, place);
+    bool together = LANES > 1 && ended == lanes_of(ALL_LANES) && !ANY(to_mask(word != place[0] + LANE_NUMBERS));
+    if (together && !OPAL_COUNT_TESTS) { // consecutive samples of a pixel, as they were started
+        global float *first = samples + place[0];
+        STORE(to_floats(light.x), first);
+        STORE(to_floats(light.y), first + step);
+        STORE(to_floats(light.z), first + 2 * step);
+        return;
+    }
+    real1 r[LANES], g[LANES], b[LANES];
+    STORE(light.x, r);
+    STORE(light.y, g);
+    STORE(light.z, b);
     if (OPAL_COUNT_TESTS) {
         STORE((real)(0), r);
         STORE((real)(0), g);
@@ -38,9 +50,9 @@ static void retire(const Scene *scene, global float *samples, const Queue *queue
     }
     for (; ended; ended &= ended - 1) {
         int lane = lowest_lane(ended);
-        global float *sample = samples + OPAL_SAMPLE_FLOATS * (ulong)place[lane];
+        global float *sample = samples + place[lane];
         sample[0] = r[lane];
-        sample[1] = g[lane];
-        sample[2] = b[lane];
+        sample[step] = g[lane];
+        sample[2 * step] = b[lane];
     }
 }

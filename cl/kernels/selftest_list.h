@@ -11,7 +11,7 @@
 // Records whose sizes, and members whose offsets, must be the same on both sides.
 #define OPAL_RECORDS(RECORD) \
     RECORD(BvhNode) RECORD(TriangleBlock) RECORD(Triangle) RECORD(FaceRecord) RECORD(FaceRange) RECORD(MeshRecord) \
-    RECORD(Settings) RECORD(CameraRecord) RECORD(EmitterRecord) RECORD(LightTriangle) \
+    RECORD(Settings) RECORD(CameraRecord) RECORD(EmitterRecord) RECORD(LightTriangle) RECORD(EnvironmentTexel) \
     OPAL_EMITTERS(OPAL_EMITTER_SIZE)
 #define OPAL_EMITTER_SIZE(name, traits) OPAL_SIZE(emitter_##name##_record)
 #define OPAL_MEMBERS(MEMBER) \
@@ -20,7 +20,7 @@
     MEMBER(CameraRecord, own) MEMBER(Settings, face_list_slot) MEMBER(Settings, rr_prob) \
     MEMBER(Settings, light_energy) MEMBER(Settings, filter_c) MEMBER(Settings, choices) \
     MEMBER(EmitterRecord, probability) MEMBER(EmitterRecord, other) MEMBER(EmitterRecord, u) \
-    MEMBER(LightTriangle, inverse_pdf)
+    MEMBER(LightTriangle, inverse_pdf) MEMBER(EnvironmentTexel, other)
 
 // Says the layout of all records by the statements OPAL_SIZE(T) and OPAL_OFFSET(T, member), which either side defines.
 #define OPAL_LAYOUT \
@@ -47,7 +47,8 @@
     MATH(log1p, log1p(x), log1p(x), -0.999, 1, 0, 2) \
     MATH(pow_20, pow(x, (real)(20)), pow(x, 20), 0.1, 1, 0, 16) \
     MATH(cos_2pi, cos_sin_2pi(x).x, cos(2 * pi * x), -1, 1, 1, 2) \
-    MATH(sin_2pi, cos_sin_2pi(x).y, sin(2 * pi * x), -1, 1, 1, 2)
+    MATH(sin_2pi, cos_sin_2pi(x).y, sin(2 * pi * x), -1, 1, 1, 2) \
+    MATH(turn_of, turn_of(x, (real)(1)), atan(x) / (2 * pi), -4, 4, 0.125, 2)
 
 #define OPAL_MATH_ENUM(name, device, host, low, high, scale, limit) MATH_##name,
 enum { OPAL_MATH(OPAL_MATH_ENUM) MATH_COUNT };

@@ -8,6 +8,7 @@
 //   FLAG     true or false
 //   BSDF     another BSDF, by the first word of its record
 //   POINT, VECTOR   a position, a direction with its length, in world space; of emitters, whose records the host makes
+//   IMAGE, TRANSFORM   the file of a picture, a matrix; likewise
 // A range is AT_LEAST(x), ABOVE(x), BETWEEN(x, y) with both ends, INSIDE(x, y) without them, or ANY. REQUIRED in place
 // of a default, of emitters: the file must say it.
 // From the list come the record that host and device share (below), the lanes' struct and its reader

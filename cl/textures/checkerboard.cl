@@ -16,7 +16,3 @@ static v3 texture_checkerboard_color(const Scene *scene, uints at, TexturePoint 
     mask first = in_first_half(uv.x) == in_first_half(uv.y);
     return v3_pick(first, texture_words(record->color0, at), texture_words(record->color1, at));
 }
-
-static v2 texture_checkerboard_gradient(const Scene *scene, uints at, TexturePoint point, mask active) {
-    return v2_of((real)(0), (real)(0)); // but for its edges
-}

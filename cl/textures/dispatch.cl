@@ -20,19 +20,13 @@ static v3 texture_color(const Scene *scene, uints at, TexturePoint point, mask a
     return factor;
 }
 
-// The derivatives over u and v of that factor's luminance: 0 in lanes that are not active or have no texture.
+// The derivatives over u and v of that factor's luminance: 0 in lanes that are not active or have no bitmap.
 static v2 texture_gradient(const Scene *scene, uints at, TexturePoint point, mask active) {
     v2 gradient = v2_of((real)(0), (real)(0));
     mask textured = active & to_mask(at != OPAL_UNTEXTURED);
     at = uints_pick(textured, at, (uints)(0));
-    uints kind = GATHER_WORD(uints, scene->textures, at);
-#define TEXTURE_GRADIENT(name) { \
-        mask m = textured & to_mask(kind == TEXTURE_##name); \
-        if (ANY(m)) { \
-            v2 own = texture_##name##_gradient(scene, at, point, m); \
-            gradient = v2_of(m ? own.x : gradient.x, m ? own.y : gradient.y); \
-        } \
-    }
-    OPAL_TEXTURES(TEXTURE_GRADIENT)
-    return gradient;
+    mask bitmap = textured & to_mask(GATHER_WORD(uints, scene->textures, at) == TEXTURE_bitmap);
+    if (!ANY(bitmap)) return gradient;
+    v2 own = texture_bitmap_gradient(scene, at, point, bitmap);
+    return v2_of(bitmap ? own.x : gradient.x, bitmap ? own.y : gradient.y);
 }

@@ -1,7 +1,6 @@
 // interface: what every texture offers (textures/NAME.cl for each row of textures/list.h).
 //   v3 texture_NAME_color(scene, at, point, active)   linear RGB at `point` of the textures whose records begin at word
 //                                                     `at`
-//   v2 texture_NAME_gradient(scene, at, point, active)   the derivatives of its luminance over u and v
 // Functions compute all lanes; their callers pick the active ones. The record of another lane may be of another kind:
 // an index that comes from it must not be followed.
 #include "core/lanes.cl"

@@ -7,7 +7,8 @@
 // TEXTURE(name)
 #define OPAL_TEXTURES(TEXTURE) \
     TEXTURE(checkerboard) \
-    TEXTURE(bitmap)
+    TEXTURE(bitmap) \
+    TEXTURE(mesh_attribute)
 
 // How a bitmap goes on outside the unit square: again and again, mirrored there and back, by the texels of its sides.
 enum { WRAP_repeat, WRAP_mirror, WRAP_clamp };
@@ -19,7 +20,7 @@ enum { OPAL_TEXTURES(OPAL_TEXTURE_ENUM) TEXTURE_COUNT };
 namespace opal {
 #endif
 
-// The records of the kinds. All begin with the kind, and with the map from a surface's texture coordinates (u, v, 1) to
+// The records of the kinds. All begin with the kind. to_uv: the map from a surface's texture coordinates (u, v, 1) to
 // the texture's own.
 typedef struct {
     uint kind;
@@ -37,6 +38,15 @@ typedef struct {
     uint wrap;            // WRAP_*
     uint nearest;         // 1: the nearest texel; 0: bilinear interpolation
 } texture_bitmap_record;
+
+// Of one mesh. Triangle i has the words first + stride * i, modulo 2^32, of the attributes: three corners, or one.
+typedef struct {
+    uint kind;
+    uint first, stride;
+    uint channels;        // of a corner: 1, grey, or 3
+    uint corners;         // 3, or 1: the same all over the triangle
+    float scale;          // of all values
+} texture_mesh_attribute_record;
 
 #ifdef __cplusplus
 }

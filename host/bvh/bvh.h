@@ -23,12 +23,24 @@ struct BoundedPrimitive {
     uint mesh; // index
 };
 
+struct MeshAttribute;
+
+// Where the numbers of a mesh attribute are among the scene's: those of triangle `triangle` + i, `stride` many, begin
+// at `first` + i stride. Of an attribute of vertices they are those of three corners.
+struct AttributeRange {
+    const MeshAttribute *attribute;
+    uint triangle, triangles = 0;
+    std::size_t first;
+    uint stride;
+};
+
 // The primitives of a scene in flattened units: an indexed triangle mesh, no triangle of which is degenerate, and
 // primitives of other shapes.
 struct TriangleSoup {
     LargeVector<Point3f> vertices;
     LargeVector<std::array<uint, 3>> corners = {}; // three vertex indices for each triangle id
     std::vector<BoundedPrimitive> others = {};
+    std::vector<AttributeRange> attributes = {};
 };
 
 using BlockIds = std::array<uint, OPAL_WIDTH>; // ids of a block's primitives; OPAL_NONE in unused places, the last ones

@@ -60,6 +60,15 @@ std::string value_text(const Color &color) { return color_text(color); }
 [[maybe_unused]] std::string value_text(double number) { return fmt::format("{:g}", number); }
 [[maybe_unused]] std::string value_text(bool flag) { return flag ? "true" : "false"; }
 std::string value_text(Vec3 p) { return fmt::format("{:g} {:g} {:g}", p.x, p.y, p.z); }
+std::string value_text(const std::shared_ptr<const EnvironmentMap> &map) {
+    return fmt::format("of {} x {} pixels", map->width, map->height);
+}
+std::string value_text(const Transform &t) {
+    std::vector<double> numbers;
+    for (std::size_t row = 0; row < 3; row++)
+        numbers.insert(numbers.end(), t.rows[row].begin(), t.rows[row].begin() + 3);
+    return fmt::format("{:.4g}", fmt::join(numbers, " "));
+}
 
 // "position 0 1 0, power 10 10 10"
 std::string parameters_text(Light light) {
@@ -75,6 +84,10 @@ std::string text_of(const CheckerboardTexture &texture) {
 }
 std::string text_of(const BitmapTexture &texture) {
     return fmt::format("a bitmap of {} x {} pixels", texture.picture->width, texture.picture->height);
+}
+std::string text_of(const MeshAttributeTexture &texture) {
+    return fmt::format("the mesh's {}{}", texture.name,
+                       texture.scale == 1 ? "" : fmt::format(" times {:g}", texture.scale));
 }
 
 // " times a bitmap of 64 x 64 pixels"
@@ -110,7 +123,8 @@ std::string shape_text(const Mesh &mesh) {
 // All of a mesh but its name.
 std::string mesh_text(const Mesh &mesh) {
     return fmt::format("{}, {}{}", shape_text(mesh), bsdf_text(mesh.bsdf),
-                       mesh.radiance ? fmt::format(", emits {} W/(m^2 sr){}", color_text(*mesh.radiance),
+                       mesh.radiance ? fmt::format(", emits {} W/(m^2 sr){}{}", color_text(*mesh.radiance),
+                                                   mesh.texture ? factor_text(*mesh.texture) : "",
                                                    mesh.emits_on_both_sides ? " on both sides" : "")
                                      : "");
 }

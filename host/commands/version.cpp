@@ -10,6 +10,9 @@
 #include <OpenEXR/OpenEXRConfig.h>
 #include <fmt/format.h>
 #include <memory>
+
+#include <cstdio> // jpeglib.h needs FILE
+#include <jpeglib.h>
 #include <png.h>
 #include <pugixml.hpp>
 #include <xxhash.h>
@@ -31,13 +34,16 @@ std::string compiler() {
 }
 
 std::vector<Part> libraries() {
-    return {{"OpenEXR", OPENEXR_VERSION_STRING},
-            {"libpng", png_get_libpng_ver(nullptr)},
-            {"pugixml", fmt::format("{}.{}", PUGIXML_VERSION / 1000, PUGIXML_VERSION % 1000 / 10)},
-            {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
-            {"nlohmann_json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
-                                          NLOHMANN_JSON_VERSION_PATCH)},
-            {"xxHash", fmt::format("{}.{}.{}", XXH_VERSION_MAJOR, XXH_VERSION_MINOR, XXH_VERSION_RELEASE)}};
+    return {
+        {"OpenEXR", OPENEXR_VERSION_STRING},
+        {"libpng", png_get_libpng_ver(nullptr)},
+        {"libjpeg-turbo", fmt::format("{}.{}.{}", LIBJPEG_TURBO_VERSION_NUMBER / 1000000,
+                                      LIBJPEG_TURBO_VERSION_NUMBER / 1000 % 1000, LIBJPEG_TURBO_VERSION_NUMBER % 1000)},
+        {"pugixml", fmt::format("{}.{}", PUGIXML_VERSION / 1000, PUGIXML_VERSION % 1000 / 10)},
+        {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
+        {"nlohmann_json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
+                                      NLOHMANN_JSON_VERSION_PATCH)},
+        {"xxHash", fmt::format("{}.{}.{}", XXH_VERSION_MAJOR, XXH_VERSION_MINOR, XXH_VERSION_RELEASE)}};
 }
 
 int run(const std::string &json) {

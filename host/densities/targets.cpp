@@ -78,6 +78,11 @@ std::string example_value(ParameterType type) {
     }
 }
 
+// Whether the command line can say it.
+bool has_text(const Parameter &parameter) {
+    return parameter.type != ParameterType::BSDF && parameter.type != ParameterType::TRANSFORM;
+}
+
 // An object as a scene would say it, so that defaults and checks are the scene's. BSDFs within it are diffuse.
 // `others`: known parameters that are none of its own.
 XmlDocument xml_of(const std::string &tag, const std::string &kind, std::span<const Parameter> rows,
@@ -85,13 +90,13 @@ XmlDocument xml_of(const std::string &tag, const std::string &kind, std::span<co
     std::string xml = fmt::format("<{} type=\"{}\">", tag, kind);
     for (const Parameter &row : rows) {
         const std::string name = with_hyphens(row.name);
-        if (row.type == ParameterType::BSDF) {
+        if (row.type == ParameterType::BSDF)
             xml += "<bsdf type=\"diffuse\"/>";
+        if (!has_text(row))
             continue;
-        }
         others.insert(name);
         const auto found = parameters.find(name);
-        if (found == parameters.end() && !std::isnan(row.initial))
+        if (found == parameters.end() && (!std::isnan(row.initial) || row.type == ParameterType::IMAGE))
             continue;
         std::string value = found == parameters.end() ? example_value(row.type) : found->second;
         if (row.type == ParameterType::COLOR && split(value).size() == 1)
@@ -198,17 +203,15 @@ Target open_light(const std::string &name, const Parameters &parameters, const P
     return target;
 }
 
-bool is_nested(const Parameter &parameter) { return parameter.type == ParameterType::BSDF; }
-
 // A BSDF whose directions have a density, or one that leads to others.
 bool has_density(uint kind) {
-    return (bsdf_traits(kind) & OPAL_SMOOTH) || std::ranges::any_of(bsdf_parameters(kind), is_nested);
+    return (bsdf_traits(kind) & OPAL_SMOOTH) || !std::ranges::all_of(bsdf_parameters(kind), has_text);
 }
 
 std::string names_of(std::span<const Parameter> parameters) {
     std::vector<std::string> names;
     for (const Parameter &parameter : parameters)
-        if (!is_nested(parameter))
+        if (has_text(parameter))
             names.push_back(with_hyphens(parameter.name));
     return fmt::format("{}", fmt::join(names, ", "));
 }
@@ -253,7 +256,7 @@ std::vector<TargetParameter> all_parameters() {
             add_meaning(all, parameter, warp_name(warp), fmt::format("above 0 [{:g}]", otherwise));
     const auto add_rows = [&](const char *owner, std::span<const Parameter> rows) {
         for (const Parameter &p : rows)
-            if (!is_nested(p))
+            if (has_text(p))
                 add_meaning(all, with_hyphens(p.name), owner,
                             fmt::format("{}, {} [{}]", p.meaning, text_of(p), text_of_initial(p)));
     };
@@ -271,7 +274,9 @@ std::vector<TargetParameter> all_parameters() {
 Light light_of_parameters(uint kind, const Parameters &parameters) {
     const std::string name = emitter_name(kind);
     const XmlDocument document = xml_of("emitter", name, emitter_parameters(kind), parameters, "light:" + name);
-    return parse_scene_emitter(document.root(), {});
+    ParseContext context;
+    context.example_map = examples::environment();
+    return parse_scene_emitter(document.root(), context);
 }
 
 std::string target_name(const std::string &typed) {

@@ -101,6 +101,20 @@ SceneDescription sun_of_height(double degrees) {
     return floor_lit_by({emitter_directional{{std::cos(a), -s, 0}, {1 / s, 1 / s, 1 / s}}, {}}, 40);
 }
 
+// A sky of 16 x 9 texels, one of which is that many times brighter than the others.
+SceneDescription sky_of_contrast(double contrast) {
+    constexpr int width = 16, height = 9, bright = 2 * width + 3;
+    Picture picture;
+    picture.width = width;
+    picture.height = height;
+    picture.channels = 1;
+    picture.floats.assign(width * height, float(1 / (1 + contrast / (width * height))));
+    picture.floats[bright] *= float(contrast);
+    emitter_envmap sky;
+    sky.map = environment_of(std::move(picture), "extremes");
+    return floor_lit_by({sky, {}}, 40);
+}
+
 SceneDescription rough_floor(double alpha) { return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4), microfacet(alpha)); }
 // A glossy floor seen from `degrees` above its plane.
 SceneDescription grazed_floor(double degrees) {
@@ -419,6 +433,13 @@ const std::vector<StressRow> &stress_rows() {
          .promised_from = 1e-2,
          .promised_to = 90,
          .picture = sun_of_height},
+        {.name = "sky",
+         .stretched = "radiance of one texel of a sky over that of the others",
+         .values = decades(0, 8),
+         .start = 1,
+         .promised_from = 1,
+         .promised_to = 1e6,
+         .picture = sky_of_contrast},
         {.name = "alpha",
          .stretched = "roughness of a microfacet floor",
          .values = reversed(decades(-6, 0)),

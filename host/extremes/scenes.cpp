@@ -13,6 +13,7 @@ template <class Value> Value moved(const Value &value, ParameterType, const Tran
 Vec3 moved(Vec3 value, ParameterType type, const Transform &by) {
     return type == ParameterType::POINT ? by.point(value) : by.vector(value);
 }
+Transform moved(const Transform &value, ParameterType, const Transform &by) { return by * value; }
 
 } // namespace
 

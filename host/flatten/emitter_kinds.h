@@ -15,6 +15,13 @@ namespace opal {
     emitter_##name##_record flattened(const emitter_##name &light, const Flattening &flattening);
 OPAL_SCENE_EMITTERS(OPAL_DECLARE_EMITTER)
 
+// Sets the axes of a projector's image: unit vectors x, along which it goes to the right, and y, to its bottom.
+void store_image_axes(const emitter_projector &light, Vec3 x, Vec3 y, emitter_projector_record &record);
+// Fills the table of an environment's texels, and what the record says of it; compensate: may light sampling leave out
+// what is dark (emitter_envmap::mis_compensation)?
+void flatten_map(const emitter_envmap &light, bool compensate, emitter_envmap_record &record,
+                 LargeVector<EnvironmentTexel> &texels);
+
 inline void add_extent(const Light &light, Extent &extent) {
     std::visit([&](const auto &own) { add_extent(own, extent); }, light.parameters);
 }
@@ -27,12 +34,19 @@ inline bool is_black(const Light &light) { return !(power_of(light, 1) > 0); }
 // The triangles of a mesh that emits; a sphere has none.
 struct EmittingMesh {
     const Mesh &mesh;
+    uint index; // of the mesh
     const Flattening &flattening;
     uint begin, end; // ids of its triangles
     const TriangleSoup &soup;
     const std::vector<uint> &slots; // of each triangle's vertices, by id: block * 8 + place in the block, as in a Hit
     bool uniform_triangles;         // --triangle-choice uniform
 };
+
+// The area of a triangle in flattened units, after rounding.
+inline double triangle_area(const TriangleSoup &soup, uint id) {
+    const auto &[a, b, c] = soup.corners[id];
+    return 0.5 * length(normal_of(soup.vertices[a], soup.vertices[b], soup.vertices[c]));
+}
 
 // Of each emitter of meshes: fills the record and the emitter's rows of tables. Returns the area in flattened units,
 // that of the rounded triangles.

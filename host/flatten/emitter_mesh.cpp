@@ -9,8 +9,7 @@ double flatten_mesh(const EmittingMesh &from, EmitterRecord &record, FlatScene &
     std::vector<double> areas;
     double area = 0;
     for (uint id = from.begin; id < from.end; id++) {
-        const auto &[a, b, c] = from.soup.corners[id];
-        areas.push_back(0.5 * length(normal_of(from.soup.vertices[a], from.soup.vertices[b], from.soup.vertices[c])));
+        areas.push_back(triangle_area(from.soup, id));
         area += areas.back();
     }
     store(*from.mesh.radiance, 1, record.u.of_mesh.color);

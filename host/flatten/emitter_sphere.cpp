@@ -14,6 +14,8 @@ double flatten_sphere(const EmittingMesh &from, EmitterRecord &record, FlatScene
     std::ranges::copy(center, own.center);
     own.radius = from.flattening.distance(sphere.radius);
     own.inward = sphere.inward;
+    const auto primitive = std::ranges::lower_bound(from.soup.others, from.index, {}, &BoundedPrimitive::mesh);
+    own.sphere = primitive->id & OPAL_BLOCK_BITS;
     store(*from.mesh.radiance, 1, own.color);
     return 4 * std::numbers::pi * own.radius * own.radius;
 }

@@ -85,6 +85,12 @@ void rotate_corners(uint triangle, int by, TriangleSoup &soup, FlatScene &scene)
         float(&corners)[3][2] = scene.triangle_uvs[triangle].corner;
         std::rotate(&corners[0][0], &corners[0][0] + 2 * by, &corners[0][0] + 6);
     }
+    for (const AttributeRange &range : soup.attributes)
+        if (!range.attribute->of_faces && triangle - range.triangle < range.triangles) {
+            const auto first = scene.attributes.begin() +
+                               std::ptrdiff_t(range.first + (triangle - range.triangle) * std::size_t(range.stride));
+            std::rotate(first, first + by * range.attribute->channels, first + range.stride);
+        }
 }
 
 // Returns the face of both triangles if they make a quadrilateral, and rotates their corners to A B C and D C B; else

@@ -263,7 +263,8 @@ bool general_has(unsigned feature, int lanes) {
 // Features whose scenes have a general kernel of their own, which does not ask at run time.
 bool has_general_kernel(unsigned feature) {
     return feature == FEATURE_endless_paths || feature == FEATURE_hidden_emitters || feature == FEATURE_uv ||
-           feature == FEATURE_tangents || feature == FEATURE_light_textures || feature == FEATURE_bsdf_blendbsdf ||
+           feature == FEATURE_tangents || feature == FEATURE_light_textures || feature == FEATURE_emitter_projector ||
+           feature == FEATURE_emitter_envmap || feature == FEATURE_bsdf_blendbsdf ||
            feature == FEATURE_bsdf_normalmap || feature == FEATURE_bsdf_bumpmap;
 }
 

@@ -70,7 +70,8 @@ inline bool is_wide_filter(const Settings &settings) {
 // with_face_list: may they be? Tests of the tree say no.
 FlatScene flatten(const SceneDescription &scene, int lanes, bool with_face_list = true);
 
-// The same of a scene that is flattened once: each triangle mesh is freed as soon as it is gathered, and left empty.
+// The same of a scene that is flattened once: each triangle mesh and picture is freed as soon as it is gathered, and
+// left empty; a picture keeps its size.
 FlatScene flatten_and_free(SceneDescription &scene, int lanes);
 
 } // namespace opal

@@ -183,7 +183,8 @@ void build_acceleration(TriangleSoup &soup, const std::optional<std::vector<Poin
 }
 
 FlatScene flatten(const SceneDescription &description, int lanes, bool with_face_list,
-                  const std::function<void(uint)> &on_gathered) {
+                  const std::function<void(uint)> &on_gathered,
+                  const std::function<void(const Picture &)> &free_picture) {
     double triangles = 0;
     for (const Mesh &mesh : description.meshes)
         if (const auto *shape = std::get_if<TriangleMesh>(&mesh.shape))
@@ -201,16 +202,43 @@ FlatScene flatten(const SceneDescription &description, int lanes, bool with_face
     scene.crop = description.camera.window();
     fill_film(description.camera, scene.settings);
     fill_strategy(description, flattening, scene.settings);
-    TextureGatherer textures(scene.textures, scene.texels);
-    gather_bsdfs(description, textures, scene);
     TriangleSoup soup = gather_primitives(description, flattening, scene, on_gathered);
+    TextureGatherer textures(scene.textures, soup.attributes);
+    gather_bsdfs(description, textures, scene);
     build_acceleration(soup, light_points(description, flattening, soup, scene.triangles),
                        with_face_list && lanes >= FACE_LIST_LANES, description.strategy.is_general(), scene);
     gather_emitters(description, flattening, extent.radius(), soup, textures, scene);
+    scene.texels = textures.texels(free_picture);
     if (!scene.textures.empty()) // as of BSDFs
         scene.textures.resize(scene.textures.size() + longest_texture_record / sizeof(uint));
     scene.features = find_features(description, scene, lanes);
     return scene;
+}
+
+void add_bitmap(Texture &texture, std::vector<BitmapTexture *> &bitmaps) {
+    if (auto *bitmap = std::get_if<BitmapTexture>(&texture))
+        bitmaps.push_back(bitmap);
+}
+
+void add_bitmaps(Bsdf &bsdf, std::vector<BitmapTexture *> &bitmaps) {
+    for (auto &[word, texture] : bsdf.textures)
+        add_bitmap(texture, bitmaps);
+    for (Bsdf &child : bsdf.children)
+        add_bitmaps(child, bitmaps);
+}
+
+// All that share pictures.
+std::vector<BitmapTexture *> bitmaps_of(SceneDescription &scene) {
+    std::vector<BitmapTexture *> bitmaps;
+    for (Mesh &mesh : scene.meshes) {
+        add_bitmaps(mesh.bsdf, bitmaps);
+        if (mesh.texture)
+            add_bitmap(*mesh.texture, bitmaps);
+    }
+    for (Light &light : scene.lights)
+        if (light.texture)
+            add_bitmap(light.texture->texture, bitmaps);
+    return bitmaps;
 }
 
 } // namespace
@@ -224,14 +252,23 @@ std::size_t FlatScene::tree_bytes() const {
 }
 
 FlatScene flatten(const SceneDescription &scene, int lanes, bool with_face_list) {
-    return flatten(scene, lanes, with_face_list, [](uint) {});
+    return flatten(scene, lanes, with_face_list, [](uint) {}, {});
 }
 
 FlatScene flatten_and_free(SceneDescription &scene, int lanes) {
-    return flatten(scene, lanes, true, [&](uint i) {
+    const std::vector<BitmapTexture *> bitmaps = bitmaps_of(scene);
+    const auto free_mesh = [&](uint i) {
         if (auto *mesh = std::get_if<TriangleMesh>(&scene.meshes[i].shape))
             *mesh = {};
-    });
+    };
+    const auto free_picture = [&](const Picture &picture) {
+        const auto size = std::make_shared<const Picture>(
+            Picture{picture.width, picture.height, picture.channels, {}, {}, picture.encoded});
+        for (BitmapTexture *bitmap : bitmaps)
+            if (bitmap->picture.get() == &picture)
+                bitmap->picture = size;
+    };
+    return flatten(scene, lanes, true, free_mesh, free_picture);
 }
 
 } // namespace opal

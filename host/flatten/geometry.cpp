@@ -1,5 +1,6 @@
 #include "flatten/geometry.h"
 
+#include "base/error.h"
 #include "base/log.h"
 #include "flatten/emitter_kinds.h"
 #include "flatten/store.h"
@@ -54,6 +55,12 @@ private:
     // What each kind of shape is to the device.
 
     void add_primitives(const TriangleMesh &mesh) {
+        const auto first_range = std::ptrdiff_t(soup.attributes.size());
+        for (const auto &attribute : mesh.attributes) {
+            const uint stride = uint(attribute->channels) * (attribute->of_faces ? 1 : 3);
+            soup.attributes.push_back({attribute.get(), uint(scene_.triangles.size()), 0, 0, stride});
+        }
+        std::vector<uint> kept; // triangles
         const uint first_normal = uint(scene_.normals.size() / 3), first = add_vertices(mesh.positions);
         for (Vec3 normal : mesh.normals)
             for (double component : {normal.x, normal.y, normal.z})
@@ -66,9 +73,33 @@ private:
             std::array<uint, 3> normals{OPAL_NONE, OPAL_NONE, OPAL_NONE};
             for (int k = 0; k < 3 && smooth; k++)
                 normals[k] = first_normal + triangle[k].normal;
+            const std::size_t before = scene_.triangles.size();
             add_triangle(first, {triangle[0].position, triangle[1].position, triangle[2].position}, normals,
                          uv_of(mesh, i));
+            if (!mesh.attributes.empty() && scene_.triangles.size() > before)
+                kept.push_back(uint(i));
         }
+        for (auto range = soup.attributes.begin() + first_range; range != soup.attributes.end(); ++range)
+            add_attribute(mesh, kept, *range);
+    }
+
+    // The values of an attribute of these triangles of a mesh.
+    void add_attribute(const TriangleMesh &mesh, std::span<const uint> triangles, AttributeRange &range) {
+        const auto channels = std::ptrdiff_t(range.attribute->channels);
+        const auto add = [&](uint index) {
+            const auto value = range.attribute->values.begin() + index * channels;
+            scene_.attributes.insert(scene_.attributes.end(), value, value + channels);
+        };
+        range.first = scene_.attributes.size();
+        range.triangles = uint(triangles.size());
+        if (range.first + std::size_t(range.stride) * triangles.size() > std::numeric_limits<uint>::max())
+            throw Error("the attributes of meshes have more than 2^32 numbers together");
+        for (uint i : triangles)
+            if (range.attribute->of_faces)
+                add(i);
+            else
+                for (const TriangleMesh::Corner &corner : mesh.triangles[i])
+                    add(corner.position);
     }
 
     void add_primitives(const Parallelogram &shape) {

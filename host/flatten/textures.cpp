@@ -4,11 +4,16 @@
 #include "base/srgb.h"
 #include "flatten/store.h"
 #include "scene/parameters.h"
+#include "scene/shapes.h"
 #include "shared/types.h"
 #include "textures/list.h"
 
+#include <half.h>
+
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -23,6 +28,15 @@ void store_map(const UvTransform &map, float (&words)[2][3]) {
 
 constexpr uint byte_values = 256;
 
+// What bytes mean: as numbers, and as sRGB means them.
+using DecodedBytes = std::array<double, byte_values>;
+DecodedBytes decoded_bytes(bool encoded) {
+    DecodedBytes values;
+    for (uint byte = 0; byte < byte_values; byte++)
+        values[byte] = encoded ? srgb_decode(byte / 255.0) : byte / 255.0;
+    return values;
+}
+
 double mean_of(const CheckerboardTexture &texture) {
     return (luminance(texture.color0) + luminance(texture.color1)) / 2;
 }
@@ -30,16 +44,54 @@ double mean_of(const CheckerboardTexture &texture) {
 double mean_of(const BitmapTexture &texture) {
     const Picture &picture = *texture.picture;
     const bool encoded = picture.encoded && !texture.raw;
-    const auto linear = [encoded](double value) { return encoded ? srgb_decode(value) : value; };
+    const DecodedBytes bytes = decoded_bytes(encoded);
     const auto channels = std::size_t(picture.channels);
     const std::size_t values = std::max(picture.bytes.size(), picture.floats.size());
     Color sum{};
     for (std::size_t i = 0; i < values; i++) {
-        const double value = linear(picture.bytes.empty() ? double(picture.floats[i]) : picture.bytes[i] / 255.0);
+        const double value = !picture.bytes.empty() ? bytes[picture.bytes[i]]
+                             : encoded              ? srgb_decode(picture.floats[i])
+                                                    : double(picture.floats[i]);
         for (std::size_t c = i % channels; c < 3; c += channels)
             sum[c] += value;
     }
     return luminance(sum) * double(channels) / double(values);
+}
+
+double mean_of(const MeshAttributeTexture &texture) {
+    const auto &values = texture.attribute->values;
+    const auto channels = std::size_t(texture.attribute->channels);
+    Color sum{};
+    for (std::size_t i = 0; i < values.size(); i++)
+        for (std::size_t c = i % channels; c < 3; c += channels)
+            sum[c] += double(values[i]);
+    return values.empty() ? 0 : texture.scale * luminance(sum) * double(channels) / double(values.size());
+}
+
+bool has_bytes(const Picture &picture) { return !picture.bytes.empty(); }
+
+constexpr uint most_of_16_bits = 65535;
+
+std::vector<float> decoded_16_bits(bool encoded, bool is_half) {
+    std::vector<float> values(most_of_16_bits + 1);
+    for (uint i = 0; i < values.size(); i++) {
+        const double value = double(i) / most_of_16_bits;
+        values[i] = float(encoded ? srgb_decode(value) : value);
+        if (is_half)
+            values[i] = Imath::half(values[i]);
+    }
+    return values;
+}
+
+// Adds bytes to words, which they need not fill. Has the room been reserved, each page is touched once.
+void append(const void *bytes, std::size_t count, LargeVector<uint> &words) {
+    constexpr std::size_t most = 1 << 20; // a block that stays in the cache between zeros and bytes
+    const auto *from = static_cast<const unsigned char *>(bytes);
+    for (std::size_t at = 0; at < count; at += most) {
+        const std::size_t block = std::min(most, count - at), first = words.size();
+        words.resize(first + (block + sizeof(uint) - 1) / sizeof(uint));
+        std::memcpy(&words[first], from + at, block);
+    }
 }
 
 } // namespace
@@ -59,49 +111,81 @@ std::vector<uint> TextureGatherer::words(const CheckerboardTexture &texture) {
 
 std::vector<uint> TextureGatherer::words(const BitmapTexture &texture) {
     const Picture &picture = *texture.picture;
-    const auto [first, decode] = place_of(picture, picture.encoded && !texture.raw);
+    const bool encoded = picture.encoded && !texture.raw, is_byte = has_bytes(picture);
+    const bool is_half = picture.encoded && !is_byte && !texture.full_precision; // of 16 bits, as Mitsuba holds them
+    const std::size_t first = place_of(picture, is_byte || !encoded ? is_half ? Values::half : Values::as_they_are
+                                                : is_half           ? Values::decoded_half
+                                                                    : Values::decoded);
     texture_bitmap_record record{};
     record.kind = TEXTURE_bitmap;
     store_map(texture.to_uv, record.to_uv);
     record.width = uint(picture.width);
     record.height = uint(picture.height);
     record.channels = uint(picture.channels);
-    record.first = first;
-    record.decode = decode;
+    record.first = uint(is_byte ? sizeof(uint) * first : first);
+    record.decode = !is_byte ? OPAL_NONE : encoded ? byte_values : 0;
     record.wrap = texture.wrap;
     record.nearest = texture.nearest;
     return words_of(record);
 }
 
-// The texels begin with two tables, the values of bytes as numbers and as sRGB means them. Bytes of all pictures follow
-// as the files have them, floats are decoded.
-TextureGatherer::Place TextureGatherer::place_of(const Picture &picture, bool encoded) {
-    if (texels_.empty())
-        for (const bool curve : {false, true})
-            for (uint byte = 0; byte < byte_values; byte++)
-                texels_.push_back(std::bit_cast<uint>(float(curve ? srgb_decode(byte / 255.0) : byte / 255.0)));
-    const bool has_bytes = !picture.bytes.empty();
-    const auto [found, is_new] = pictures_.try_emplace({&picture, encoded && !has_bytes});
-    if (is_new) {
-        const std::size_t bytes = has_bytes ? picture.bytes.size() : sizeof(float) * picture.floats.size();
-        const std::size_t first = texels_.size();
-        if (sizeof(uint) * first + bytes > std::numeric_limits<uint>::max())
-            throw Error("the textures have more than 4 GiB of texels together");
-        texels_.resize(first + (bytes + sizeof(uint) - 1) / sizeof(uint));
-        if (has_bytes) {
-            std::memcpy(&texels_[first], picture.bytes.data(), bytes);
+std::vector<uint> TextureGatherer::words(const MeshAttributeTexture &texture) {
+    const auto range = std::ranges::find(attributes_, texture.attribute.get(), &AttributeRange::attribute);
+    if (range == attributes_.end())
+        throw Error(texture.name + ": a texture of an attribute is on something that is no mesh");
+    texture_mesh_attribute_record record{};
+    record.kind = TEXTURE_mesh_attribute;
+    record.stride = range->stride;
+    record.first = uint(range->first) - range->stride * range->triangle;
+    record.channels = uint(texture.attribute->channels);
+    record.corners = texture.attribute->of_faces ? 1 : 3;
+    record.scale = float(texture.scale);
+    return words_of(record);
+}
+
+// The texels begin with two tables of floats, what bytes mean. Bytes of all pictures follow as the files have them, and
+// floats.
+std::size_t TextureGatherer::place_of(const Picture &picture, Values values) {
+    for (const Stored &known : stored_)
+        if (known.picture == &picture && known.values == values)
+            return known.first;
+    if (stored_.empty())
+        words_ = 2 * byte_values;
+    const std::size_t count = std::size_t(picture.channels) * std::size_t(picture.width) * std::size_t(picture.height);
+    const std::size_t first = words_;
+    words_ += has_bytes(picture) ? (count + sizeof(uint) - 1) / sizeof(uint) : count;
+    if (sizeof(uint) * words_ > std::numeric_limits<uint>::max())
+        throw Error("the textures have more than 4 GiB of texels together");
+    stored_.push_back({&picture, values, first});
+    return first;
+}
+
+LargeVector<uint> TextureGatherer::texels(const std::function<void(const Picture &)> &free) const {
+    LargeVector<uint> texels;
+    if (stored_.empty())
+        return texels;
+    texels.reserve(words_);
+    for (const bool encoded : {false, true})
+        for (const double value : decoded_bytes(encoded))
+            texels.push_back(std::bit_cast<uint>(float(value)));
+    for (auto stored = stored_.begin(); stored != stored_.end(); ++stored) {
+        const Picture &picture = *stored->picture;
+        if (has_bytes(picture)) {
+            append(picture.bytes.data(), picture.bytes.size(), texels);
+        } else if (stored->values == Values::as_they_are) {
+            append(picture.floats.data(), sizeof(float) * picture.floats.size(), texels);
         } else {
-            for (std::size_t i = 0; i < picture.floats.size(); i++) {
-                const float value = picture.floats[i];
-                texels_[first + i] = std::bit_cast<uint>(encoded ? float(srgb_decode(value)) : value);
-            }
+            const std::vector<float> decoded =
+                decoded_16_bits(stored->values != Values::half, stored->values != Values::decoded);
+            for (const float value : picture.floats)
+                texels.push_back(std::bit_cast<uint>(decoded[std::size_t(std::lround(value * most_of_16_bits))]));
         }
-        found->second = {uint(has_bytes ? sizeof(uint) * first : first), OPAL_NONE};
+        const bool is_last =
+            std::none_of(stored + 1, stored_.end(), [&](const Stored &later) { return later.picture == &picture; });
+        if (free && is_last)
+            free(picture);
     }
-    Place place = found->second;
-    if (has_bytes)
-        place.decode = encoded ? byte_values : 0;
-    return place;
+    return texels;
 }
 
 uint TextureGatherer::add(const Texture &texture) {

@@ -2,10 +2,13 @@
 #pragma once
 
 #include "base/large_vector.h"
+#include "bvh/bvh.h"
 #include "scene/textures.h"
 #include "shared/glue.h"
 
+#include <functional>
 #include <map>
+#include <span>
 #include <vector>
 
 namespace opal {
@@ -16,20 +19,39 @@ double mean_luminance(const Texture &texture);
 // Puts the record of each texture into a table, equal ones once.
 class TextureGatherer {
 public:
-    TextureGatherer(LargeVector<uint> &table, LargeVector<uint> &texels) : table_(table), texels_(texels) {}
+    // attributes: where those of meshes are
+    TextureGatherer(LargeVector<uint> &table, std::span<const AttributeRange> attributes)
+        : table_(table), attributes_(attributes) {}
     uint add(const Texture &texture); // returns the first word of its record
 
+    // The texels of all textures, to be made once, after the last one was added. free: frees each picture as soon as
+    // it is copied; empty if pictures stay.
+    LargeVector<uint> texels(const std::function<void(const Picture &)> &free) const;
+
 private:
-    LargeVector<uint> &table_, &texels_;
-    std::map<std::vector<uint>, uint> known_; // first word of each record
-    struct Place {
-        uint first, decode; // as in a record
+    // How a picture's values become texels.
+    enum class Values {
+        as_they_are, // bytes, which the device decodes, or floats
+        half,        // as half floats
+        decoded,     // from sRGB
+        decoded_half // both
     };
-    std::map<std::pair<const Picture *, bool>, Place> pictures_; // by whether its values are encoded
+    struct Stored {
+        const Picture *picture;
+        Values values;
+        std::size_t first; // word of the texels
+    };
+
+    LargeVector<uint> &table_;
+    std::span<const AttributeRange> attributes_;
+    std::map<std::vector<uint>, uint> known_; // first word of each record
+    std::vector<Stored> stored_;
+    std::size_t words_ = 0; // of the texels
 
     std::vector<uint> words(const CheckerboardTexture &texture);
     std::vector<uint> words(const BitmapTexture &texture);
-    Place place_of(const Picture &picture, bool encoded);
+    std::vector<uint> words(const MeshAttributeTexture &texture);
+    std::size_t place_of(const Picture &picture, Values values);
 };
 
 } // namespace opal

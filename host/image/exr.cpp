@@ -16,6 +16,7 @@
 #include <ImfInputPart.h>
 #include <ImfIntAttribute.h>
 #include <ImfMultiPartInputFile.h>
+#include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <ImfVersion.h>
@@ -42,8 +43,7 @@ namespace {
 // A file in memory, for reading: read_file has seen every error of the disk.
 class MemoryInput : public Imf::IStream {
 public:
-    MemoryInput(const std::filesystem::path &file, std::string bytes)
-        : IStream(file.c_str()), bytes_(std::move(bytes)) {}
+    MemoryInput(const std::filesystem::path &file, std::string_view bytes) : IStream(file.c_str()), bytes_(bytes) {}
     bool read(char bytes[], int count) override { // false at the end of the file
         if (place_ > bytes_.size() || static_cast<size_t>(count) > bytes_.size() - place_)
             throw std::runtime_error("the file ends too early");
@@ -63,7 +63,7 @@ public:
     void seekg(uint64_t place) override { place_ = place; }
 
 private:
-    std::string bytes_;
+    std::string_view bytes_;
     size_t place_ = 0;
     bool text_ended_ = false; // by the byte that was read last
 };
@@ -88,12 +88,12 @@ private:
     size_t place_ = 0;
 };
 
-// OpenEXR's view of a layer's pixels.
-Imf::Slice slice_of(float *values, int width, const Imath::Box2i &window) {
+// OpenEXR's view of a channel's pixels. stride: floats from one pixel to the next
+Imf::Slice slice_of(float *values, int width, const Imath::Box2i &window, size_t stride = 1) {
     char *first = reinterpret_cast<char *>(values);
     const std::ptrdiff_t before = window.min.x + std::ptrdiff_t(window.min.y) * width;
-    return Imf::Slice(Imf::FLOAT, first - before * std::ptrdiff_t(sizeof(float)), sizeof(float),
-                      sizeof(float) * size_t(width));
+    return Imf::Slice(Imf::FLOAT, first - before * std::ptrdiff_t(stride * sizeof(float)), stride * sizeof(float),
+                      stride * sizeof(float) * size_t(width));
 }
 
 constexpr std::array channel_names = {"R", "G", "B"};
@@ -121,6 +121,25 @@ int picture_part(const Imf::MultiPartInputFile &file) {
     return 0;
 }
 
+// The channels that are the picture, in their order: R, G, B or what stands for them; X, Y, Z; Y alone. None: no such
+// channels.
+std::vector<std::string> picture_channels(const std::vector<std::string> &names) {
+    const auto has = [&](const std::string &name) { return std::ranges::find(names, name) != names.end(); };
+    std::vector<std::vector<std::string>> choices = {{"R", "G", "B"}, {"r", "g", "b"}};
+    for (const std::string &name : names)
+        if (name.ends_with(".Combined.R")) {
+            const std::string stem = name.substr(0, name.size() - 1);
+            choices.push_back({stem + "R", stem + "G", stem + "B"});
+        }
+    choices.push_back({"X", "Y", "Z"});
+    if (!has("RY")) // beside it, Y is luminance to chroma
+        choices.push_back({"Y"});
+    for (const std::vector<std::string> &choice : choices)
+        if (std::ranges::all_of(choice, has))
+            return choice;
+    return {};
+}
+
 // Makes R, G, B of the channels X, Y, Z: CIE XYZ with white D65, linear sRGB (IEC 61966-2-1).
 void to_linear_srgb(Image &image) {
     std::array<Layer, 3> layers = {image.get("X"), image.get("Y"), image.get("Z")};
@@ -138,37 +157,28 @@ void to_linear_srgb(Image &image) {
 void name_channels(const std::filesystem::path &file, Image &image) {
     if (image.find("R"))
         return;
-    const auto rename = [&](const std::array<std::string, 3> &from) {
-        for (const std::string &name : from)
-            if (!image.find(name))
-                return false;
-        for (size_t c = 0; c < from.size(); c++)
-            for (Layer &layer : image.layers)
-                if (layer.name == from[c])
-                    layer.name = channel_names[c];
-        note(fmt::format("{}: takes the channels {} for R, G, B", file.string(), fmt::join(from, ", ")));
-        return true;
-    };
-    if (rename({"r", "g", "b"}))
-        return;
+    std::vector<std::string> names;
     for (const Layer &layer : image.layers)
-        if (layer.name.ends_with(".Combined.R")) {
-            const std::string stem = layer.name.substr(0, layer.name.size() - 1);
-            rename({stem + "R", stem + "G", stem + "B"});
-            return;
-        }
-    if (image.find("X") && image.find("Y") && image.find("Z")) {
+        names.push_back(layer.name);
+    const std::vector<std::string> from = picture_channels(names);
+    if (from.empty())
+        return;
+    if (from.front() == "X") {
         to_linear_srgb(image);
         note(fmt::format("{}: takes the channels X, Y, Z, as linear sRGB", file.string()));
-        return;
-    }
-    if (const Layer *grey = image.find("Y"); grey && !image.find("RY")) {
-        const std::vector<float> values = grey->values;
+    } else if (from.front() == "Y") {
+        const std::vector<float> values = image.get("Y").values;
         std::erase_if(image.layers, [](const Layer &layer) { return layer.name == "Y"; });
         for (const char *name : channel_names)
             image.layers.push_back({name, values});
         image.is_luminance = true;
         note(fmt::format("{}: takes the channel Y for R, G and B", file.string()));
+    } else {
+        for (size_t c = 0; c < from.size(); c++)
+            for (Layer &layer : image.layers)
+                if (layer.name == from[c])
+                    layer.name = channel_names[c];
+        note(fmt::format("{}: takes the channels {} for R, G, B", file.string(), fmt::join(from, ", ")));
     }
 }
 
@@ -215,6 +225,61 @@ void check_size(const Imf::Header &header, size_t file_size) {
         throw Error(fmt::format("{} bytes cannot hold {} x {} pixels", file_size, width, height));
 }
 
+std::vector<std::string> names_of(const Imf::ChannelList &channels) {
+    std::vector<std::string> names;
+    for (auto channel = channels.begin(); channel != channels.end(); ++channel)
+        names.push_back(channel.name());
+    return names;
+}
+
+void refuse_subsampled(const std::string &name, const Imf::Channel &channel) {
+    if (channel.xSampling != 1 || channel.ySampling != 1)
+        throw Error(fmt::format("channel {} is subsampled, which Opal does not read", name));
+}
+
+// Those of a picture; else the only channel there is.
+std::vector<std::string> texture_channels(const Imf::ChannelList &channels) {
+    const std::vector<std::string> all = names_of(channels);
+    std::vector<std::string> names = picture_channels(all);
+    if (names.empty() && all.size() == 1)
+        names = all;
+    if (names.empty())
+        throw Error(fmt::format("it has no channels R, G, B; it has {}", fmt::join(all, ", ")));
+    for (const std::string &name : names)
+        refuse_subsampled(name, channels[name.c_str()]);
+    return names;
+}
+
+ExrTexture size_of(const Imf::Header &header, size_t channels) {
+    const Imath::Box2i window = header.dataWindow();
+    return {window.max.x - window.min.x + 1, window.max.y - window.min.y + 1, int(channels), {}};
+}
+
+void note_part(const std::filesystem::path &file, const Imf::MultiPartInputFile &input, int part) {
+    if (input.parts() > 1)
+        note(fmt::format("{}: has {} parts; takes {}", file.string(), input.parts(),
+                         input.header(part).hasName() ? input.header(part).name() : "the first"));
+}
+
+// Calls use(input, part) with the part that holds the picture, once it is checked.
+template <class Use> auto with_exr(const std::filesystem::path &file, std::string_view bytes, Use use) {
+    MemoryInput stream(file, bytes);
+    try {
+        Imf::MultiPartInputFile input(stream);
+        const int part = picture_part(input);
+        if (input.header(part).hasType() && Imf::isDeepData(input.header(part).type()))
+            throw Error("it is deep: several samples a pixel, which Opal does not read");
+        if (!input.partComplete(part))
+            throw Error("the file is incomplete");
+        check_size(input.header(part), bytes.size());
+        return use(input, part);
+    } catch (const std::bad_alloc &) {
+        cannot_read(file, ENOMEM);
+    } catch (const std::exception &error) {
+        throw Error(fmt::format("{}: cannot be read as OpenEXR: {}", file.string(), error.what()));
+    }
+}
+
 Image read_pixels(Imf::MultiPartInputFile &parts, int part) {
     Imf::InputPart file(parts, part);
     const Imf::Header &header = file.header();
@@ -223,8 +288,7 @@ Image read_pixels(Imf::MultiPartInputFile &parts, int part) {
     image.width = window.max.x - window.min.x + 1;
     image.height = window.max.y - window.min.y + 1;
     for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
-        if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1)
-            throw Error(fmt::format("channel {} is subsampled, which Opal does not read", channel.name()));
+        refuse_subsampled(channel.name(), channel.channel());
         image.layers.push_back({channel.name(), std::vector<float>(size_t(image.width) * size_t(image.height))});
     }
     Imf::FrameBuffer frame;
@@ -372,28 +436,53 @@ std::vector<std::string> zips_blocks(const Image &image, const Imf::Header &head
 } // namespace
 
 Image read_exr(const std::filesystem::path &file, FileHashes *hashes) {
-    std::string bytes = read_file(file);
+    const std::string bytes = read_file(file);
     if (hashes)
         hashes->add(bytes);
-    const size_t size = bytes.size();
-    MemoryInput stream(file, std::move(bytes));
-    try {
-        Imf::MultiPartInputFile input(stream);
-        const int part = picture_part(input);
-        if (!input.partComplete(part))
-            throw Error("the file is incomplete");
-        check_size(input.header(part), size);
+    return with_exr(file, bytes, [&](Imf::MultiPartInputFile &input, int part) {
         Image image = read_pixels(input, part);
-        if (input.parts() > 1)
-            note(fmt::format("{}: has {} parts; takes {}", file.string(), input.parts(),
-                             input.header(part).hasName() ? input.header(part).name() : "the first"));
+        note_part(file, input, part);
         name_channels(file, image);
         return image;
-    } catch (const std::bad_alloc &) {
-        cannot_read(file, ENOMEM);
-    } catch (const std::exception &error) {
-        throw Error(fmt::format("{}: cannot be read as OpenEXR: {}", file.string(), error.what()));
-    }
+    });
+}
+
+ExrTexture exr_size(const std::filesystem::path &file, std::string_view bytes) {
+    return with_exr(file, bytes, [&](Imf::MultiPartInputFile &input, int part) {
+        const Imf::Header &header = input.header(part);
+        const std::vector<std::string> all = names_of(header.channels());
+        const std::vector<std::string> channels = texture_channels(header.channels());
+        note_part(file, input, part);
+        if (channels.size() != all.size() || (channels.front() != "R" && channels.front() != "Y"))
+            note(fmt::format("{}: takes {} of the channels {}", file.string(), fmt::join(channels, ", "),
+                             fmt::join(all, ", ")));
+        if (header.dataWindow() != header.displayWindow())
+            note(fmt::format("{}: takes the data window, which is not the display window", file.string()));
+        return size_of(header, channels.size());
+    });
+}
+
+ExrTexture exr_pixels(const std::filesystem::path &file, std::string_view bytes) {
+    return with_exr(file, bytes, [&](Imf::MultiPartInputFile &input, int part) {
+        Imf::InputPart own(input, part);
+        const Imath::Box2i window = own.header().dataWindow();
+        const std::vector<std::string> channels = texture_channels(own.header().channels());
+        ExrTexture pixels = size_of(own.header(), channels.size());
+        const size_t values = channels.size() * size_t(pixels.width) * size_t(pixels.height);
+        pixels.values.resize(values);
+        Imf::FrameBuffer frame;
+        for (size_t c = 0; c < channels.size(); c++)
+            frame.insert(channels[c], slice_of(pixels.values.data() + c, pixels.width, window, channels.size()));
+        own.setFrameBuffer(frame);
+        own.readPixels(window.min.y, window.max.y);
+        if (channels.front() == "X")
+            for (size_t i = 0; i < values; i += channels.size()) {
+                float *const pixel = &pixels.values[i];
+                const Color rgb = linear_rgb_of_xyz(pixel[0], pixel[1], pixel[2]);
+                std::copy(rgb.begin(), rgb.end(), pixel);
+            }
+        return pixels;
+    });
 }
 
 nlohmann::json json_of(const Crop &crop) {

@@ -3,6 +3,7 @@
 
 #include "base/crop.h"
 #include "base/hash.h"
+#include "base/large_vector.h"
 
 #include <filesystem>
 #include <map>
@@ -44,6 +45,15 @@ Image cropped(const Image &image, const Crop &part); // the part, which the imag
 // .B become R, G, B. Notes tell what was chosen. A data window within a larger display window is a crop, as the
 // attribute opal.crop is.
 Image read_exr(const std::filesystem::path &file, FileHashes *hashes = nullptr); // hashes: gets that of the bytes
+
+// The picture that a texture takes of an EXR, by the same rules; of a file of one channel that one, as grey. Others of
+// its channels are not read.
+struct ExrTexture {
+    int width = 0, height = 0, channels = 0;
+    LargeVector<float> values; // rows from the top, those of a pixel together
+};
+ExrTexture exr_size(const std::filesystem::path &file, std::string_view bytes); // without values. Notes what is chosen
+ExrTexture exr_pixels(const std::filesystem::path &file, std::string_view bytes);
 
 // Writes the form that most programs read right (measured): one part of scanlines, float32, ZIPS, both windows from
 // (0, 0), colour space and chromaticities (Rec. 709) as attributes. Names of layers ("variance.R") must not begin with

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/file_use.h"
 #include "image/deflate.h"
+#include "image/libpng.h"
 
 #include <fmt/format.h>
 #include <png.h>
@@ -114,15 +115,12 @@ void append_to_string(png_structp png, png_bytep bytes, size_t count) {
     static_cast<std::string *>(png_get_io_ptr(png))->append(reinterpret_cast<const char *>(bytes), count);
 }
 
-[[noreturn]] void throw_error(png_structp, png_const_charp what) { throw std::runtime_error(what); }
-void ignore_warning(png_structp, png_const_charp) {}
-
 std::string png_bytes(const Image &image, const Display &display) {
     constexpr int level =
         3; // of zlib, for repetitions: 6, the default, saves a tenth of the bytes in six times the time
     std::string bytes;
     Rows rows(image, display);
-    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, throw_error, ignore_warning);
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, throw_png_error, ignore_png_warning);
     png_infop info = png ? png_create_info_struct(png) : nullptr;
     struct Made {
         png_structp png;

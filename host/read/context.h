@@ -1,10 +1,12 @@
 // The context of parsing: the user's options, and what becomes of mistakes.
 #pragma once
 
+#include "read/picture_loader.h"
 #include "read/xml.h"
 #include "scene/scene.h"
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,6 +44,9 @@ struct ParseContext {
     Mistakes *mistakes = nullptr;     // gathers mistakes; null: the first one is thrown
     std::optional<Dialect> dialect{}; // nothing: a scene's names tell it
     FileHashes *hashes = nullptr;     // gets those of the files that are read; null: nobody asks
+    std::shared_ptr<PictureLoader> pictures = std::make_shared<PictureLoader>(); // of copies of the context, too
+    // The map of an envmap that names no file (opal warp, selftest); null: that is a mistake.
+    std::shared_ptr<const EnvironmentMap> example_map{};
     // Is it an attribute that means nothing in this format, and gets a note? null: there is none.
     bool (*is_leftover)(const XmlNode &node, const std::string &attribute) = nullptr;
 

@@ -20,6 +20,8 @@ using namespace std::literals;
 
 const std::string by_assimp = "convert it: assimp export FILE NEW.obj (Debian: assimp-utils), or import it into "
                               "Blender and export Wavefront (.obj)";
+const std::string by_magick = "convert it: magick FILE NEW.png";
+const std::string by_oiiotool = "convert it: oiiotool FILE -o NEW.exr";
 const std::string by_blender = "open it in Blender and export Wavefront (.obj)";
 const std::string no_text_format =
     "Opal reads scenes of Nori and Mitsuba (.xml), and Wavefront and PLY meshes (.obj, .ply)";
@@ -51,10 +53,24 @@ const std::vector<Magic> magics = {
      "compressed by xz", "unpack it: xz -dc FILE > NEW"},
     {"\x28\xb5\x2f\xfd", "compressed by zstd", "unpack it: zstd -dc FILE > NEW; if it is Blender's: " + by_blender},
     {"7z\xbc\xaf", "a 7z archive", "unpack it: 7z x FILE"},
-    {"\x89PNG", "a PNG image", ""},
-    {"\xff\xd8\xff", "a JPEG image", ""},
-    {"\x76\x2f\x31\x01", "an OpenEXR image", ""},
-    {"#?RADIANCE", "a Radiance HDR image", ""},
+    {"\x89PNG\r\n\x1a\n", "a PNG image", "", FileKind::png},
+    {"\xff\xd8\xff", "a JPEG image", "", FileKind::jpeg},
+    {"\x76\x2f\x31\x01", "an OpenEXR image", "", FileKind::exr},
+    {"#?RADIANCE", "a Radiance HDR image", "", FileKind::hdr},
+    {"#?RGBE", "a Radiance HDR image", "", FileKind::hdr},
+    {"GIF8", "a GIF image", by_magick},
+    {"II*\0"sv, "a TIFF image", by_oiiotool},
+    {"MM\0*"sv, "a TIFF image", by_oiiotool},
+    {"DDS ", "a DDS image", by_magick},
+    {"\xabKTX ", "a KTX image", by_magick},
+    {"PF\n", "a PFM image", by_oiiotool},
+    {"Pf\n", "a PFM image", by_oiiotool},
+    {"P5\n", "a PGM image", by_magick},
+    {"P6\n", "a PPM image", by_magick},
+    {"8BPS", "a Photoshop image", by_magick},
+    {"\0\0\0\x0cjP  "sv, "a JPEG 2000 image", by_magick},
+    {"\0\0\0\x0cJXL "sv, "a JPEG XL image", by_magick},
+    {"\xff\x0a", "a JPEG XL image", by_magick},
     {"%PDF", "a PDF document", ""},
     {"version https://git-lfs", "a pointer that stands for the real file, by Git LFS", "get it: git lfs pull"},
 };
@@ -75,6 +91,24 @@ bool is_binary_stl(std::string_view bytes) {
         return false;
     std::memcpy(&count, bytes.data() + header, sizeof count);
     return count > 0 && bytes.size() == header + sizeof count + triangle * size_t(count);
+}
+
+// Images whose magic is not at their begin, or too short to tell them alone.
+FileKindRow other_image(std::string_view bytes) {
+    const auto has = [&](std::string_view part, size_t at) {
+        return bytes.size() > at && bytes.substr(at).starts_with(part);
+    };
+    if (has("RIFF", 0) && has("WEBP", 8))
+        return {FileKind::other, "a WebP image", by_magick};
+    if (has("ftypavif", 4))
+        return {FileKind::other, "an AVIF image", by_magick};
+    if (has("ftyphei", 4) || has("ftypmif1", 4))
+        return {FileKind::other, "a HEIF image", by_magick};
+    if (has("BM", 0) && has("\0\0\0\0"sv, 6)) // reserved words
+        return {FileKind::other, "a BMP image", by_magick};
+    if (bytes.ends_with("TRUEVISION-XFILE.\0"sv))
+        return {FileKind::other, "a TGA image", by_magick};
+    return {};
 }
 
 std::string unicode_name(std::string_view bytes) {
@@ -229,6 +263,8 @@ const char *name_of(FileKind wanted) {
         return "a PLY file";
     case FileKind::mtl:
         return "a material library (MTL)";
+    case FileKind::picture:
+        return "an image that Opal reads (PNG, JPEG, Radiance HDR, OpenEXR)";
     default:
         return "a scene";
     }
@@ -267,6 +303,8 @@ FileKindRow kind_of(std::string_view bytes) {
     for (const Magic &magic : magics)
         if (bytes.starts_with(magic.bytes))
             return {magic.kind, magic.name, magic.advice};
+    if (const FileKindRow image = other_image(bytes); image.kind != FileKind::unknown)
+        return image;
     if (is_binary_stl(bytes))
         return {FileKind::other, "a binary STL mesh", by_assimp};
     if (contains(bytes.substr(0, 4096), "\0"sv))
@@ -280,8 +318,11 @@ std::string wrong_kind_text(const std::filesystem::path &file, const FileKindRow
         advice = "its type in a scene is ply";
     else if (wanted == FileKind::ply && found.kind == FileKind::obj)
         advice = "its type in a scene is obj";
+    else if (wanted == FileKind::picture && found.advice == no_text_format)
+        advice = "";
     const bool is_other_scene = wanted == FileKind::scene && found.kind == FileKind::mitsuba_scene;
-    return fmt::format("{}: is {}, not {}{}{}", file.string(), found.name,
+    return fmt::format("{}: is {}, not {}{}{}", file.string(),
+                       found.name.empty() ? "a file of unknown kind" : found.name,
                        is_other_scene ? "one of Nori" : name_of(wanted), advice.empty() ? "" : "; ", advice);
 }
 

@@ -17,8 +17,13 @@ enum class FileKind {
     mtl,           // statements of a Wavefront material library
     scene,         // XML whose root is <scene> or <test>
     mitsuba_scene, // XML of Mitsuba: <scene version="3.0.0"> with its tags
-    text,          // any other text that Opal does not read
-    other,         // anything else that Opal does not read
+    png,
+    jpeg,
+    hdr, // Radiance
+    exr,
+    picture, // wanted: any of the four above
+    text,    // any other text that Opal does not read
+    other,   // anything else that Opal does not read
 };
 
 struct FileKindRow {

@@ -282,6 +282,9 @@ private:
             texture.strength = number(values[0]);
         else if (option.name == "-clamp")
             texture.clamp = lower_case(values[0]) == "on";
+        else if ((option.name == "-mm" && (number(values[0]) != 0 || number(values[1]) != 1)) ||
+                 (option.name == "-t" && std::ranges::any_of(values, [&](auto value) { return number(value) != 0; })))
+            warn_here(fmt::format("option '{}' of a texture is ignored", option.name));
         return 1 + values.size();
     }
 };

@@ -6,6 +6,7 @@
 #include "scene/scene.h"
 
 #include <array>
+#include <functional>
 #include <map>
 
 namespace opal {
@@ -40,7 +41,8 @@ std::vector<MtlMaterial> read_mtl(const std::filesystem::path &file, FileHashes 
 // programs can be told. Absent statements have the defaults that readers agree on best (scenes/README.md).
 struct PrincipledMaterial {
     Color base{0.8, 0.8, 0.8};
-    double roughness = 1; // 0 to 1; the microfacets' alpha is its square
+    std::optional<Texture> base_texture; // what multiplies it; set by surface_of
+    double roughness = 1;                // 0 to 1; the microfacets' alpha is its square
     double metallic = 0;
     double ior = 1.5;
     double f0 = 0;             // reflectance of the clear layer over the base at normal incidence; 0: there is none
@@ -60,6 +62,12 @@ struct SurfaceOfMaterial {
     bool is_invisible = false;        // d 0: its faces are left out
     std::vector<std::string> lacking; // what the material says and Opal does not render: "map_Kd wood.png"
 };
-SurfaceOfMaterial surface_of(const MtlMaterial &material);
+
+// Makes a texture of an image that a statement names; nothing, and a warning that says what stands in for it, if it
+// cannot be read.
+using TextureReader = std::function<std::optional<Texture>(const MtlTexture &image, const std::string &instead)>;
+
+// Of the images, those of map_Kd and map_d are rendered; an empty `read` leaves them out, too.
+SurfaceOfMaterial surface_of(const MtlMaterial &material, const TextureReader &read = {});
 
 } // namespace opal

@@ -2,15 +2,19 @@
 // Ns, Ka and illum holds for its files alone.
 #include "read/mtl.h"
 
+#include "base/table.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace opal {
 
 namespace {
 
+constexpr double default_kd = 0.8;   // what readers agree on best
 constexpr double max_exponent = 1e5; // of a Phong lobe: about a mirror; single precision holds it well
 
 double grey_of(const Color &c) { return (c[0] + c[1] + c[2]) / 3; }
@@ -124,7 +128,7 @@ Bsdf microfacet_of(const Color &base, double f0, double roughness) {
 // A metal as Opal has it today: a mirror, or a Phong lobe of its colour as wide as microfacets of that roughness, and
 // for a share of metal the diffuse base beside it.
 Bsdf metal_of(const PrincipledMaterial &material, std::vector<std::string> &lacking) {
-    const bool is_white = *std::min_element(material.base.begin(), material.base.end()) >= 1;
+    const bool is_white = !material.base_texture && *std::ranges::min_element(material.base) >= 1;
     if (material.metallic >= 1 && material.roughness == 0 && is_white)
         return bsdf_mirror_record{};
     lacking.push_back("metal, which becomes a Phong lobe of its colour");
@@ -149,17 +153,68 @@ Bsdf bsdf_of(const PrincipledMaterial &material, std::vector<std::string> &lacki
         return twosided(metal_of(material, lacking));
     if (largest_of(material.phong) > 0)
         return twosided(phong_of(material.base, material.phong, material.phong_exponent, lacking));
-    if (material.f0 > 0 && largest_of(material.base) < 1)
+    if (material.f0 > 0 && (largest_of(material.base) < 1 || material.base_texture))
         return twosided(microfacet_of(material.base, material.f0, material.roughness));
     return twosided(diffuse_of(material.base));
 }
+
+// Puts the texture onto the colours that the base colour is in.
+void add_base_texture(const PrincipledMaterial &material, Bsdf &bsdf, std::vector<std::string> &lacking) {
+    Bsdf &base = bsdf.children.empty() ? bsdf : bsdf.children.front();
+    bool is_used = false;
+    for (const Parameter &parameter : bsdf_parameters(base.kind()))
+        if (parameter.name == "albedo" || parameter.name == "kd" || (parameter.name == "ks" && material.metallic > 0)) {
+            base.textures.emplace(parameter.texture_word, *material.base_texture);
+            is_used = true;
+        }
+    if (!is_used)
+        lacking.push_back(fmt::format("the picture of the colour of a {}", bsdf_name(base.kind())));
+}
+
+// A surface of which light meets a share.
+Bsdf mask_of(const Bsdf &base, double opacity, const std::optional<Texture> &texture) {
+    Bsdf bsdf = bsdf_mask_record{.opacity = opacity};
+    bsdf.children.push_back(base);
+    if (texture)
+        bsdf.textures.emplace(find_row(bsdf_parameters(BSDF_mask), "parameter", "opacity").texture_word, *texture);
+    return bsdf;
+}
+
+void set_place(Bsdf &bsdf, const SourcePlace &place) {
+    bsdf.place = place;
+    for (Bsdf &child : bsdf.children)
+        set_place(child, place);
+}
+
+std::string text_of(const Color &c) { return fmt::format("{:g} {:g} {:g}", c[0], c[1], c[2]); }
+
+// The textures of a material that are rendered, as surface_of has them.
+class MaterialTextures {
+public:
+    MaterialTextures(const MtlMaterial &material, const TextureReader &read) : material_(material), read_(read) {}
+
+    // Nothing where no statement of that name is written, or its image cannot be read.
+    std::optional<Texture> take(const char *statement, const std::string &instead) {
+        const auto found = material_.textures.find(statement);
+        if (found == material_.textures.end() || !read_)
+            return std::nullopt;
+        taken_.insert(statement);
+        return read_(found->second, instead);
+    }
+    bool has_taken(const std::string &statement) const { return taken_.contains(statement); }
+
+private:
+    const MtlMaterial &material_;
+    const TextureReader &read_;
+    std::set<std::string> taken_;
+};
 
 } // namespace
 
 PrincipledMaterial principled_of(const MtlMaterial &written) {
     const Statements of(written);
     PrincipledMaterial material;
-    material.base = of.color("kd", of.has_texture("map_kd") ? 1 : 0.8);
+    material.base = of.color("kd", of.has_texture("map_kd") ? 1 : default_kd);
     material.ior = of.number("ni", 1.5);
     material.opacity = of.number("d", 1);
     material.emission = of.color("ke", of.has_texture("map_ke") ? 1 : 0);
@@ -173,18 +228,35 @@ PrincipledMaterial principled_of(const MtlMaterial &written) {
     return material;
 }
 
-SurfaceOfMaterial surface_of(const MtlMaterial &written) {
-    const PrincipledMaterial material = principled_of(written);
+SurfaceOfMaterial surface_of(const MtlMaterial &written, const TextureReader &read) {
+    PrincipledMaterial material = principled_of(written);
+    MaterialTextures textures(written, read);
+    const Color without = Statements(written).color("kd", default_kd);
+    material.base_texture = textures.take("map_kd", fmt::format("Kd {} stands in for it", text_of(without)));
+    if (textures.has_taken("map_kd") && !material.base_texture)
+        material.base = without;
     SurfaceOfMaterial surface;
     surface.bsdf = bsdf_of(material, surface.lacking);
-    surface.bsdf.place = written.place;
-    for (Bsdf &child : surface.bsdf.children)
-        child.place = written.place;
+    if (material.base_texture)
+        add_base_texture(material, surface.bsdf, surface.lacking);
+    surface.is_invisible = material.opacity == 0;
+    const bool is_glass = surface.bsdf.is<bsdf_dielectric_record>();
+    std::optional<Texture> opacity;
+    if (const auto map = written.textures.find("map_d"); map != written.textures.end() && !is_glass) {
+        const auto base = written.textures.find("map_kd");
+        if (base == written.textures.end() || base->second.file != map->second.file) // that means its alpha
+            opacity = textures.take("map_d", fmt::format("d {:g} stands in for it", material.opacity));
+    }
+    if (opacity)
+        if (auto *picture = std::get_if<BitmapTexture>(&*opacity))
+            picture->raw = true; // numbers, no colours
+    if (is_glass && material.opacity < 1 && material.opacity > 0)
+        surface.lacking.push_back(fmt::format("opacity {:g} of glass", material.opacity));
+    else if (opacity || (material.opacity > 0 && material.opacity < 1))
+        surface.bsdf = mask_of(surface.bsdf, material.opacity, opacity);
+    set_place(surface.bsdf, written.place);
     if (largest_of(material.emission) > 0)
         surface.radiance = material.emission;
-    surface.is_invisible = material.opacity == 0;
-    if (material.opacity > 0 && material.opacity < 1)
-        surface.lacking.push_back(fmt::format("opacity {:g}, which becomes 1", material.opacity));
     if (material.sheen > 0)
         surface.lacking.push_back("sheen");
     if (material.coat > 0)
@@ -192,9 +264,10 @@ SurfaceOfMaterial surface_of(const MtlMaterial &written) {
     if (material.anisotropic != 0)
         surface.lacking.push_back("anisotropy");
     for (const auto &[statement, texture] : written.textures)
-        surface.lacking.push_back(
-            fmt::format("{} {}{}", texture.statement, texture.file,
-                        statement == "map_ke" && written.by_blender ? ", whose strength Blender has not written" : ""));
+        if (!textures.has_taken(statement))
+            surface.lacking.push_back(fmt::format(
+                "{} {}{}", texture.statement, texture.file,
+                statement == "map_ke" && written.by_blender ? ", whose strength Blender has not written" : ""));
     return surface;
 }
 

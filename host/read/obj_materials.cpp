@@ -1,5 +1,6 @@
 #include "read/obj_materials.h"
 
+#include "base/error.h"
 #include "base/log.h"
 
 #include <fmt/format.h>
@@ -112,8 +113,29 @@ Parts parts_of(const ObjFile &obj) {
     return parts;
 }
 
-void add_surface(const MtlMaterial &material, const ObjMaterialOptions &options, Mesh &mesh, bool &visible) {
-    const SurfaceOfMaterial surface = surface_of(material);
+// The image of a statement, whose v grows upwards. It is looked for beside the library.
+std::optional<Texture> texture_of(const MtlTexture &image, const std::string &instead, PictureLoader &pictures,
+                                  FileHashes *hashes) {
+    BitmapTexture texture;
+    texture.wrap = image.clamp ? WRAP_clamp : WRAP_repeat;
+    const auto [scale_u, scale_v] = image.scale;
+    const auto [offset_u, offset_v] = image.offset;
+    texture.to_uv = {{{scale_u, 0, offset_u}, {0, -scale_v, 1 - offset_v}}};
+    try {
+        const fs::path file = beside(image.place.file, image.file);
+        if (!is_file(file))
+            throw Error("no such file: " + file.string());
+        texture.picture = pictures.load_now(file, hashes);
+    } catch (const Error &error) {
+        warn(fmt::format("{}: {}: {}; {}", image.place.text(), image.statement, error.what(), instead));
+        return std::nullopt;
+    }
+    return texture;
+}
+
+void add_surface(const MtlMaterial &material, const ObjMaterialOptions &options, const TextureReader &read, Mesh &mesh,
+                 bool &visible) {
+    const SurfaceOfMaterial surface = surface_of(material, options.own_bsdf ? TextureReader() : read);
     if (!material.colors.contains("kd") && !material.textures.contains("map_kd") && !options.own_bsdf)
         note(fmt::format("{}: material '{}' has no Kd: 0.8 is taken", material.place.text(), material.name));
     if (!surface.lacking.empty() && !options.own_bsdf)
@@ -131,7 +153,7 @@ void add_surface(const MtlMaterial &material, const ObjMaterialOptions &options,
 } // namespace
 
 std::vector<Mesh> meshes_by_material(ObjFile &&obj, const fs::path &file, const Mesh &mesh, ObjMaterialOptions options,
-                                     FileHashes *hashes) {
+                                     FileHashes *hashes, const std::shared_ptr<PictureLoader> &pictures) {
     std::vector<Mesh> meshes;
     const Parts parts = parts_of(obj);
     if (parts.materials.empty()) { // no `usemtl`
@@ -140,6 +162,9 @@ std::vector<Mesh> meshes_by_material(ObjFile &&obj, const fs::path &file, const 
         return meshes;
     }
     const Materials materials = read_libraries(obj, file, hashes);
+    const TextureReader read = [&](const MtlTexture &image, const std::string &instead) {
+        return texture_of(image, instead, *pictures, hashes);
+    };
     std::vector<TriangleMesh> shapes;
     if (parts.materials.size() == 1)
         shapes.push_back(std::move(obj.mesh));
@@ -152,7 +177,7 @@ std::vector<Mesh> meshes_by_material(ObjFile &&obj, const fs::path &file, const 
             const ObjMaterial &used = obj.materials[parts.materials[i]];
             own.name += ": " + used.name;
             if (const MtlMaterial *material = find_material(materials, used.name))
-                add_surface(*material, options, own, visible);
+                add_surface(*material, options, read, own, visible);
             else if (!options.own_bsdf)
                 warn(fmt::format("{}: no material '{}' in the libraries: its triangles are grey, diffuse ({})",
                                  used.place.text(), used.name, shapes[i].triangles.size()));

@@ -5,119 +5,120 @@
 #include "base/memory.h"
 #include "base/read_file.h"
 #include "image/image.h"
+#include "read/file_kind.h"
+#include "read/picture_formats.h"
 
 #include <fmt/format.h>
-#include <png.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <new>
 #include <stdexcept>
 
 namespace opal {
 namespace {
 
-constexpr std::string_view png_signature("\x89PNG\r\n\x1a\n", 8), exr_signature("\x76\x2f\x31\x01", 4);
-
-struct Reading {
-    std::string_view left;
-};
-
-void read_bytes(png_structp png, png_bytep to, size_t count) {
-    auto &reading = *static_cast<Reading *>(png_get_io_ptr(png));
-    if (count > reading.left.size())
-        png_error(png, "the file ends early");
-    std::copy_n(reading.left.begin(), count, to);
-    reading.left.remove_prefix(count);
-}
-
-[[noreturn]] void throw_error(png_structp, png_const_charp what) { throw std::runtime_error(what); }
-void ignore_warning(png_structp, png_const_charp) {}
-
-// As libpng gives them: 1 or 3 channels of 8 or 16 bits, without alpha.
-Picture decoded_png(const std::filesystem::path &file, std::string_view bytes) {
-    png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, throw_error, ignore_warning);
-    png_infop info = png ? png_create_info_struct(png) : nullptr;
-    struct Made {
-        png_structp png;
-        png_infop info;
-        ~Made() { png_destroy_read_struct(&png, &info, nullptr); }
-    } const made{png, info};
-    if (!info)
-        throw std::bad_alloc();
-    Reading reading{bytes};
-    png_set_read_fn(png, &reading, read_bytes);
-    png_read_info(png, info);
-    Picture picture;
-    picture.width = int(png_get_image_width(png, info));
-    picture.height = int(png_get_image_height(png, info));
-    const bool deep = png_get_bit_depth(png, info) == 16;
-    const int color = png_get_color_type(png, info);
-    picture.channels = color & PNG_COLOR_MASK_COLOR ? 3 : 1;
-    picture.encoded = true;
-    const std::size_t row = std::size_t(picture.width) * std::size_t(picture.channels);
-    const std::size_t values = row * std::size_t(picture.height);
-    check_memory(double(values) * (deep ? 6 : 1),
-                 fmt::format("{}: an image of {} x {} pixels", file.string(), picture.width, picture.height));
-    if (color == PNG_COLOR_TYPE_PALETTE)
-        png_set_palette_to_rgb(png);
-    else
-        png_set_expand_gray_1_2_4_to_8(png);
-    png_set_strip_alpha(png);
-    png_set_interlace_handling(png);
-    png_read_update_info(png, info);
-    std::vector<png_byte> all(values * (deep ? 2 : 1));
-    std::vector<png_bytep> rows;
-    for (int y = 0; y < picture.height; y++)
-        rows.push_back(all.data() + std::size_t(y) * row * (deep ? 2 : 1));
-    png_read_image(png, rows.data());
-    png_read_end(png, nullptr);
-    if (!deep) {
-        picture.bytes = std::move(all);
-        return picture;
+// Adds the file's name, but to an Error, which has it.
+template <class Read> auto reading(const std::filesystem::path &file, const char *format, Read read) {
+    try {
+        return read();
+    } catch (const Error &) {
+        throw;
+    } catch (const std::runtime_error &error) {
+        throw Error(fmt::format("{}: cannot be read as {}: {}", file.string(), format, error.what()));
     }
-    picture.floats.reserve(values);
-    for (std::size_t i = 0; i < values; i++)
-        picture.floats.push_back(float((all[2 * i] * 256 + all[2 * i + 1]) / 65535.0));
-    return picture;
 }
 
-Picture decoded_exr(const std::filesystem::path &file, FileHashes *hashes) {
-    const Image image = read_exr(file, hashes);
-    Picture picture{image.width, image.height, 3, {}, {}, false};
-    const Layer *const channels[] = {&image.get("R"), &image.get("G"), &image.get("B")};
-    const std::size_t pixels = std::size_t(image.width) * std::size_t(image.height);
-    picture.floats.resize(3 * pixels);
+PictureHeader exr_header(const std::filesystem::path &file, std::string_view bytes) {
+    const ExrTexture size = exr_size(file, bytes); // checks the file's size itself
+    const double values = double(size.width) * size.height * size.channels;
+    return {{size.width, size.height, size.channels, {}, {}, false}, 0, values * sizeof(float)};
+}
+
+struct Format {
+    FileKind kind;
+    const char *name;
+    std::vector<const char *> endings;
+    PictureHeader (*header)(const std::filesystem::path &file, std::string_view bytes);
+    void (*decode)(std::string_view bytes, Picture &picture); // null: OpenEXR, which needs the name
+};
+const std::array<Format, 4> formats = {{
+    {FileKind::png, "PNG", {".png"}, png_header, decode_png},
+    {FileKind::jpeg, "JPEG", {".jpg", ".jpeg", ".jpe", ".jfif"}, jpeg_header, decode_jpeg},
+    {FileKind::hdr, "Radiance HDR", {".hdr", ".pic", ".rgbe"}, hdr_header, decode_hdr},
+    {FileKind::exr, "OpenEXR", {".exr"}, exr_header, nullptr},
+}};
+
+const Format &format_of(const std::filesystem::path &file, std::string_view bytes) {
+    const FileKindRow found = kind_of(bytes);
+    const auto format = std::ranges::find(formats, found.kind, &Format::kind);
+    if (format == formats.end())
+        throw Error(wrong_kind_text(file, found, FileKind::picture));
+    return *format;
+}
+
+void note_other_ending(const std::filesystem::path &file, const Format &format) {
+    std::string ending = file.extension().string();
+    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    for (const Format &other : formats)
+        if (other.kind != format.kind && std::ranges::find(other.endings, ending) != other.endings.end())
+            note(fmt::format("{}: is {}, whatever its ending says", file.string(), format.name));
+}
+
+// Counts what is no usual texel, and makes NaN and infinite values 0. Returns how many there were.
+std::size_t check_values(Picture &picture) {
     std::size_t invalid = 0;
-    for (std::size_t i = 0; i < pixels; i++)
-        for (std::size_t c = 0; c < 3; c++) {
-            const float value = channels[c]->values[i];
-            invalid += !std::isfinite(value);
-            picture.floats[3 * i + c] = std::isfinite(value) ? value : 0;
+    for (float &value : picture.floats) {
+        if (!std::isfinite(value)) {
+            value = 0;
+            invalid++;
         }
-    if (invalid > 0)
-        warn(fmt::format("{}: {} values are NaN or infinite: they are taken as 0", file.string(), invalid));
-    return picture;
+        picture.negative += value < 0;
+        picture.above_one += value > 1;
+    }
+    return invalid;
 }
 
 } // namespace
 
-Picture read_picture(const std::filesystem::path &file, FileHashes *hashes) {
-    const std::string bytes = read_file(file, Pipes::refused);
-    if (bytes.starts_with(exr_signature))
-        return decoded_exr(file, hashes);
-    if (!bytes.starts_with(png_signature))
-        throw Error(
-            fmt::format("{}: this is no image that Opal reads as a texture; possible: PNG, EXR", file.string()));
+PictureFile::PictureFile(std::filesystem::path file, FileHashes *hashes)
+    : file_(std::move(file)), bytes_(read_file(file_, Pipes::refused)) {
+    const Format &format = format_of(file_, bytes_);
     if (hashes)
-        hashes->add(bytes);
-    try {
-        return decoded_png(file, bytes);
-    } catch (const Error &) {
-        throw;
-    } catch (const std::runtime_error &error) { // of libpng
-        throw Error(fmt::format("{}: cannot be read as a PNG: {}", file.string(), error.what()));
-    }
+        hashes->add(bytes_);
+    note_other_ending(file_, format);
+    PictureHeader header = reading(file_, format.name, [&] { return format.header(file_, bytes_); });
+    header_ = std::move(header.picture);
+    if (double(bytes_.size()) < header.file_bytes)
+        throw Error(fmt::format("{}: {} bytes cannot hold {} x {} pixels", file_.string(), bytes_.size(), header_.width,
+                                header_.height));
+    check_memory(header.memory_bytes,
+                 fmt::format("{}: an image of {} x {} pixels", file_.string(), header_.width, header_.height));
+}
+
+Picture PictureFile::decode(std::size_t &invalid) const {
+    const Format &format = format_of(file_, bytes_);
+    Picture picture = header_;
+    reading(file_, format.name, [&] {
+        if (format.decode)
+            format.decode(bytes_, picture);
+        else
+            picture.floats = exr_pixels(file_, bytes_).values;
+    });
+    invalid = check_values(picture);
+    return picture;
+}
+
+Picture read_picture(const std::filesystem::path &file, FileHashes *hashes) {
+    std::size_t invalid = 0;
+    Picture picture = PictureFile(file, hashes).decode(invalid);
+    warn_of_invalid(file, invalid);
+    return picture;
+}
+
+void warn_of_invalid(const std::filesystem::path &file, std::size_t invalid) {
+    if (invalid > 0)
+        warn(fmt::format("{}: {} values are NaN or infinite: they are taken as 0", file.string(), invalid));
 }
 
 } // namespace opal

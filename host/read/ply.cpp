@@ -19,6 +19,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 
 namespace opal {
 
@@ -26,7 +27,7 @@ namespace {
 
 constexpr unsigned none = OPAL_NONE;
 
-// What is read of a vertex; `field_other` takes numbers that are not used.
+// What is read of a vertex; `field_other` takes numbers that are not used. Those of attributes follow: field_count + i.
 enum Field { field_x, field_y, field_z, field_nx, field_ny, field_nz, field_u, field_v, field_other, field_count };
 constexpr std::string_view position_names[] = {"x", "y", "z"}, normal_names[] = {"nx", "ny", "nz"};
 constexpr std::string_view uv_names[][2] = {{"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}};
@@ -156,6 +157,40 @@ private:
     const Fail &fail_;
 };
 
+// An attribute that is asked for; its numbers come from the fields from first_field on.
+struct AttributeReading {
+    MeshAttribute made;
+    size_t first_field;
+    size_t infinite = 0;     // numbers that are not finite
+    std::string first_place; // in the header
+};
+
+// The properties that may make an attribute: three numbers, or the first alone if it has a suffix. name: without
+// `vertex_` or `face_`.
+std::vector<std::array<std::string, 3>> attribute_properties(const std::string &name) {
+    std::vector<std::array<std::string, 3>> all;
+    if (name == "color")
+        all = {{"red", "green", "blue"}, {"r", "g", "b"}};
+    for (const char *ends : {"xyz", "012", "123"})
+        all.push_back({name + '_' + ends[0], name + '_' + ends[1], name + '_' + ends[2]});
+    if (const std::string_view end = "_color"; name.ends_with(end)) {
+        const std::string stem = name.substr(0, name.size() - end.size());
+        all.push_back({stem + "_r", stem + "_g", stem + "_b"});
+    }
+    return all;
+}
+
+// Keeps the values of these vertices, in that order.
+void keep_values_of(const LargeVector<unsigned> &vertices, MeshAttribute &attribute) {
+    const auto channels = size_t(attribute.channels);
+    LargeVector<float> kept;
+    kept.reserve(channels * vertices.size());
+    for (unsigned vertex : vertices)
+        for (size_t channel = 0; channel < channels; ++channel)
+            kept.push_back(attribute.values[channels * vertex + channel]);
+    attribute.values = std::move(kept);
+}
+
 class PlyReader {
 public:
     PlyReader(const std::filesystem::path &file, const Transform &to_world, FileHashes *hashes)
@@ -171,7 +206,7 @@ public:
         dropped_ = header_.end;
     }
 
-    TriangleMesh read() &&;
+    TriangleMesh read(std::span<const std::string> attributes) &&;
 
 private:
     // Reports a mistake: `where` is an offset in the file, or a word of it.
@@ -198,9 +233,12 @@ private:
     const Fail fail_{*this};
 
     const PlyElement *vertex_ = nullptr, *face_ = nullptr;
-    std::vector<Field> vertex_fields_; // of each property of `vertex`
+    std::vector<size_t> vertex_fields_; // of each property of `vertex`, a Field
     bool has_normals_ = false, has_uvs_ = false;
     const PlyProperty *corner_list_ = nullptr;
+    std::vector<size_t> face_fields_; // of each property of `face`: field_other, or field_count + i
+    std::vector<double> fields_;      // of the present vertex or face
+    std::vector<AttributeReading> vertex_attributes_, face_attributes_;
 
     TriangleMesh mesh_; // until finish with indices of vertices of the file, for normals and uv, too
     DroppedTriangles dropped_triangles_;
@@ -216,6 +254,8 @@ private:
     const PlyElement *find_element(std::string_view name) const;
     void find_properties();
     template <size_t Count> bool take_fields(const std::string_view (&names)[Count], Field first);
+    void find_attribute(const std::string &wanted);
+    bool is_skipped(const PlyElement &element, size_t property) const;
     void note_what_is_skipped() const;
 
     template <class Numbers> void read_body(Numbers numbers);
@@ -225,7 +265,8 @@ private:
     template <class Numbers> double take_length(const PlyProperty &property, Numbers &numbers);
     template <class Numbers> void read_vertices(Numbers &numbers);
     template <class Numbers> void read_faces(Numbers &numbers);
-    void add_vertex(const std::array<double, field_count> &fields);
+    void add_vertex();
+    void add_values(std::vector<AttributeReading> &attributes);
     void add_face();
     void add_triangle(unsigned a, unsigned b, unsigned c);
     void drop(double rounding);
@@ -278,7 +319,7 @@ template <size_t Count> bool PlyReader::take_fields(const std::string_view (&nam
         found[name] = size_t(it - all.begin());
     }
     for (size_t name = 0; name < Count; ++name)
-        vertex_fields_[found[name]] = Field(first + name);
+        vertex_fields_[found[name]] = first + name;
     return true;
 }
 
@@ -289,7 +330,9 @@ void PlyReader::find_properties() {
         throw Error(file_ + ": has no element 'vertex'");
     if (vertex_->count >= none)
         fail_in_header(vertex_->name, fmt::format("{} vertices are too many: at most {}", vertex_->count, none - 1));
+    fields_.assign(field_count, 0);
     vertex_fields_.assign(vertex_->properties.size(), field_other);
+    face_fields_.assign(face_ ? face_->properties.size() : 0, field_other);
     if (vertex_->count > 0 && !take_fields(position_names, field_x))
         fail_in_header(vertex_->name, "element 'vertex' needs the properties x, y and z");
     has_normals_ = take_fields(normal_names, field_nx);
@@ -311,6 +354,50 @@ void PlyReader::find_properties() {
         fail_in_header(face_->name, "element 'face' needs the list vertex_indices or vertex_index");
 }
 
+// Adds an attribute of that name, as vertex_color, if the file has one.
+void PlyReader::find_attribute(const std::string &wanted) {
+    const bool of_faces = wanted.starts_with("face_");
+    const PlyElement *const element = of_faces ? face_ : vertex_;
+    if (!element)
+        return;
+    std::vector<size_t> &fields = of_faces ? face_fields_ : vertex_fields_;
+    std::vector<AttributeReading> &attributes = of_faces ? face_attributes_ : vertex_attributes_;
+    const auto find = [&](const std::string &name) {
+        const auto &all = element->properties;
+        return size_t(std::ranges::find_if(all, [&](const PlyProperty &p) { return p.name == name && !p.is_list(); }) -
+                      all.begin());
+    };
+    const std::string name = wanted.substr(wanted.find('_') + 1);
+    for (const auto &names : attribute_properties(name)) {
+        const std::array<size_t, 3> found = {find(names[0]), find(names[1]), find(names[2])};
+        const size_t count =
+            size_t(std::ranges::count_if(found, [&](size_t i) { return i < element->properties.size(); }));
+        if (found[0] == element->properties.size() || count == 2 ||
+            (count == 1 && names[0].find('_') == std::string::npos))
+            continue;
+        AttributeReading &reading = attributes.emplace_back();
+        reading.made.name = wanted;
+        reading.made.channels = int(count);
+        reading.made.of_faces = of_faces;
+        reading.first_field = fields_.size();
+        reading.first_place = place_in_header(element->properties[found[0]].name);
+        for (size_t channel = 0; channel < count; ++channel)
+            fields[found[channel]] = fields_.size() + channel;
+        fields_.resize(fields_.size() + count);
+        if (is_integer(element->properties[found[0]].type))
+            warn(fmt::format("{}: the attribute {} has whole numbers, which are taken as they stand: 255 is no 1, and "
+                             "they are linear",
+                             reading.first_place, wanted));
+        return;
+    }
+}
+
+bool PlyReader::is_skipped(const PlyElement &element, size_t property) const {
+    return (&element == vertex_ && vertex_fields_[property] == field_other) ||
+           (&element == face_ && &element.properties[property] != corner_list_ &&
+            face_fields_[property] == field_other);
+}
+
 // One note, which names the first few.
 void PlyReader::note_what_is_skipped() const {
     constexpr size_t most_names = 12;
@@ -329,8 +416,7 @@ void PlyReader::note_what_is_skipped() const {
             skipped(element.name, fmt::format("element {}", quoted(element.name)));
         for (size_t i = 0; i < element.properties.size(); ++i) {
             const PlyProperty &property = element.properties[i];
-            if ((&element == vertex_ && vertex_fields_[i] == field_other) ||
-                (&element == face_ && &property != corner_list_))
+            if (is_skipped(element, i))
                 skipped(property.name, fmt::format("{} of {}", quoted(property.name), element.name));
         }
     }
@@ -338,8 +424,10 @@ void PlyReader::note_what_is_skipped() const {
         note(fmt::format("{}: not used: {}", place_in_header(first), fmt::join(names, ", ")));
 }
 
-TriangleMesh PlyReader::read() && {
+TriangleMesh PlyReader::read(std::span<const std::string> attributes) && {
     find_properties();
+    for (const std::string &attribute : attributes)
+        find_attribute(attribute);
     switch (header_.format) {
     case PlyFormat::ascii:
         read_body(TextNumbers<Fail>(text_, at_, fail_));
@@ -434,25 +522,35 @@ template <class Numbers> void PlyReader::read_vertices(Numbers &numbers) {
         mesh_.normals.reserve(count);
     if (has_uvs_)
         mesh_.uvs.reserve(count);
-    std::array<double, field_count> fields{};
     read_elements(*vertex_, numbers, [&] {
         for (size_t i = 0; i < vertex_fields_.size(); ++i) {
             const PlyProperty &property = vertex_->properties[i];
             if (property.is_list())
                 skip(property, numbers);
             else
-                fields[vertex_fields_[i]] = numbers.number(property, property.type);
+                fields_[vertex_fields_[i]] = numbers.number(property, property.type);
         }
-        add_vertex(fields);
+        add_vertex();
     });
 }
 
-void PlyReader::add_vertex(const std::array<double, field_count> &fields) {
-    const auto triple = [&](Field first) { return Vec3{fields[first], fields[first + 1], fields[first + 2]}; };
+// Adds the present element's.
+void PlyReader::add_values(std::vector<AttributeReading> &attributes) {
+    for (AttributeReading &reading : attributes)
+        for (size_t channel = 0; channel < size_t(reading.made.channels); ++channel) {
+            const float value = as_float(fields_[reading.first_field + channel]);
+            reading.infinite += !std::isfinite(value);
+            reading.made.values.push_back(std::isfinite(value) ? value : 0);
+        }
+}
+
+void PlyReader::add_vertex() {
+    const auto triple = [&](Field first) { return Vec3{fields_[first], fields_[first + 1], fields_[first + 2]}; };
     const Vec3 position = to_world_.point(triple(field_x));
     if (!fits_float(position))
         fail_(at_.start, fmt::format("vertex {} is not finite in single precision once transformed", number_));
     mesh_.positions.push_back(position);
+    add_values(vertex_attributes_);
     bool finite = true;
     if (has_normals_) {
         const Vec3 normal = triple(field_nx);
@@ -460,7 +558,7 @@ void PlyReader::add_vertex(const std::array<double, field_count> &fields) {
         mesh_.normals.push_back(finite ? unit_normal(to_world_, normal) : Vec3{});
     }
     if (has_uvs_) {
-        const std::array<float, 2> uv = {as_float(fields[field_u]), as_float(fields[field_v])};
+        const std::array<float, 2> uv = {as_float(fields_[field_u]), as_float(fields_[field_v])};
         finite = finite && std::isfinite(uv[0] + uv[1]);
         mesh_.uvs.push_back(uv);
     }
@@ -480,9 +578,13 @@ template <class Numbers> void PlyReader::read_faces(Numbers &numbers) {
     if (has_uvs_)
         mesh_.uv_corners.reserve(count);
     read_elements(*face_, numbers, [&] {
-        for (const PlyProperty &property : face_->properties) {
+        for (size_t i = 0; i < face_->properties.size(); ++i) {
+            const PlyProperty &property = face_->properties[i];
             if (&property != corner_list_) {
-                skip(property, numbers);
+                if (face_fields_[i] == field_other)
+                    skip(property, numbers);
+                else
+                    fields_[face_fields_[i]] = numbers.number(property, property.type);
                 continue;
             }
             corners_.clear();
@@ -524,6 +626,7 @@ void PlyReader::add_triangle(unsigned a, unsigned b, unsigned c) {
         p[i] = mesh_.positions[vertices[i]];
     if (const double rounding = rounding_of(p); !has_area(p, rounding))
         return drop(rounding);
+    add_values(face_attributes_);
     auto &triangle = mesh_.triangles.emplace_back();
     Vec3 normals;
     for (int i = 0; i < 3; ++i) {
@@ -576,9 +679,26 @@ TriangleMesh PlyReader::finish() {
     mesh.uv_corners = std::move(mesh_.uv_corners);
     mesh.normals = compact(mesh_.normals, mesh.triangles, [](Corner &corner) -> unsigned & { return corner.normal; });
     free_memory(mesh_.normals);
-    mesh.positions =
-        compact(mesh_.positions, mesh.triangles, [](Corner &corner) -> unsigned & { return corner.position; });
+    const auto position_of = [](Corner &corner) -> unsigned & { return corner.position; };
+    if (vertex_attributes_.empty()) {
+        mesh.positions = compact(mesh_.positions, mesh.triangles, position_of);
+    } else {
+        LargeVector<unsigned> vertices(mesh_.positions.size());
+        std::iota(vertices.begin(), vertices.end(), 0);
+        vertices = compact(vertices, mesh.triangles, position_of);
+        for (unsigned vertex : vertices)
+            mesh.positions.push_back(mesh_.positions[vertex]);
+        for (AttributeReading &reading : vertex_attributes_)
+            keep_values_of(vertices, reading.made);
+    }
     free_memory(mesh_.positions);
+    for (auto *list : {&vertex_attributes_, &face_attributes_})
+        for (AttributeReading &reading : *list) {
+            if (reading.infinite > 0)
+                warn(fmt::format("{}: {} numbers of the attribute {} are NaN or infinite: they are taken as 0",
+                                 reading.first_place, reading.infinite, reading.made.name));
+            mesh.attributes.push_back(std::make_shared<const MeshAttribute>(std::move(reading.made)));
+        }
     mesh.uvs = compact(mesh_.uvs, mesh.uv_corners, [](unsigned &index) -> unsigned & { return index; });
     if (mesh.uvs.empty())
         free_memory(mesh.uv_corners);
@@ -588,8 +708,9 @@ TriangleMesh PlyReader::finish() {
 
 } // namespace
 
-TriangleMesh read_ply(const std::filesystem::path &file, const Transform &to_world, FileHashes *hashes) {
-    return PlyReader(file, to_world, hashes).read();
+TriangleMesh read_ply(const std::filesystem::path &file, const Transform &to_world, FileHashes *hashes,
+                      std::span<const std::string> attributes) {
+    return PlyReader(file, to_world, hashes).read(attributes);
 }
 
 } // namespace opal

@@ -158,7 +158,7 @@ Renderer::Renderer(const Device &device, FlatScene scene, const RenderOptions &o
     with_device(device.info, [&] {
         on_device_->render = cl::Kernel(program, "render");
         on_device_->gather = cl::Kernel(film_program, "gather");
-        on_device_->gather_around = cl::Kernel(film_program, "gather_around");
+        on_device_->gather_around = cl::Kernel(film_program, by_strips() ? "gather_strips" : "gather_around");
         on_device_->clear = cl::Kernel(film_program, "clear");
         cl_uint argument = 0;
         for (const cl::Buffer &buffer : on_device_->scene)
@@ -243,7 +243,8 @@ double Renderer::launch(const cl::Kernel &kernel, unsigned items) {
     return seconds;
 }
 
-// The samples of each pixel in the next pass: as many as let a launch take about launch_seconds, by the last pass. The
+// The samples of each pixel in the next pass: as many as let a launch take about launch_seconds, by the last pass. Each
+// chunk has a multiple of the lanes, if it can, because so many samples of a pixel are stored and added as vectors. The
 // first pass is a pilot with one sample a chunk.
 unsigned Renderer::next_pass_samples(unsigned left) const {
     unsigned samples = shape_.chunks;
@@ -252,9 +253,11 @@ unsigned Renderer::next_pass_samples(unsigned left) const {
         const double fitting = options_.launch_seconds * launches / seconds_a_sample_;
         samples = std::max(1u, unsigned(std::min(fitting, 1e9) / shape_.chunks)) * shape_.chunks;
     }
-    if (options_.max_pass_samples)
-        samples = options_.max_pass_samples;
-    return std::min(std::clamp(samples, 1u, buffer_spp_), left);
+    samples = std::clamp(options_.max_pass_samples ? options_.max_pass_samples : samples, 1u, buffer_spp_);
+    const unsigned vectors = shape_.chunks * unsigned(options_.build.lanes);
+    if (samples > vectors && !options_.max_pass_samples)
+        samples -= samples % vectors;
+    return std::min(samples, left);
 }
 
 void Renderer::set_pass_arguments(cl::Kernel &kernel, unsigned first_argument, unsigned chunk_samples,
@@ -326,21 +329,30 @@ bool Renderer::render_pass(unsigned samples, const OnLaunch &on_launch) {
     return !stopped;
 }
 
+// Are wide filters gathered for by gather_strips (cl/film/many_lanes/strips.cl)?
+bool Renderer::by_strips() const {
+    return options_.build.lanes > 1 && settings_.filter_radius <= OPAL_STRIP_REACH + 0.5f;
+}
+
 // Adds the pass, `samples` of each pixel from next_sample_ on, to all bands.
 void Renderer::gather(unsigned samples) {
-    const unsigned items = ceil_div(unsigned(std::min<size_t>(band_pixels, pixels_)), unsigned(options_.build.lanes));
+    const unsigned pixels = unsigned(std::min<size_t>(band_pixels, pixels_)), lanes = unsigned(options_.build.lanes);
+    const unsigned width = settings_.film.width, items = ceil_div(pixels, lanes);
+    const unsigned rows = ceil_div(pixels - 1, width) + 1; // that a band touches, at the most
+    const unsigned items_around =
+        by_strips() ? ceil_div(width, OPAL_STRIP_VECTORS * lanes) * ceil_div(rows, OPAL_STRIP_ROWS) : items;
     for (const FilmBand &band : on_device_->bands) {
-        const auto launch_kernel = [&](cl::Kernel &kernel, std::initializer_list<cl::Buffer> film) {
+        const auto launch_kernel = [&](cl::Kernel &kernel, unsigned count, std::initializer_list<cl::Buffer> film) {
             cl_uint argument = 2; // after the settings and the samples
             for (const size_t value : {size_t(next_sample_), size_t(samples), band.first, band.pixels, size_t(empty_)})
                 kernel.setArg(argument++, cl_uint(value));
             for (const cl::Buffer &buffer : film)
                 kernel.setArg(argument++, buffer);
-            launch(kernel, items); // of one shape, whatever the band's size
+            launch(kernel, count); // of one shape, whatever the band's size
         };
-        launch_kernel(on_device_->gather, {band.sums, band.counts});
+        launch_kernel(on_device_->gather, items, {band.sums, band.counts});
         if (wide_filter_)
-            launch_kernel(on_device_->gather_around, {band.weighted});
+            launch_kernel(on_device_->gather_around, items_around, {band.weighted});
     }
     empty_ = false;
 }

@@ -85,6 +85,7 @@ private:
     void set_pass_arguments(cl::Kernel &kernel, unsigned first_argument, unsigned chunk_samples, unsigned pass_samples);
     double launch(const cl::Kernel &kernel, unsigned items);
     unsigned next_pass_samples(unsigned left) const;
+    bool by_strips() const;
     void gather(unsigned samples);
     template <class Visit> void visit_shown(const FilmBand &band, Visit visit) const;
     void read_band(const FilmBand &band, Film &film) const;

@@ -4,6 +4,7 @@
 #include "base/color.h"
 #include "base/math.h"
 #include "emitters/list.h"
+#include "scene/environment.h"
 #include "scene/parameters.h"
 #include "scene/place.h"
 #include "scene/textures.h"
@@ -28,6 +29,8 @@ inline bool is_environment(unsigned kind) { return OPAL_IS_ENVIRONMENT(emitter_t
     Vec3 { initial, initial, initial }
 #define OPAL_VALUE_VECTOR(initial)                                                                                     \
     Vec3 { initial, initial, initial }
+#define OPAL_VALUE_IMAGE(initial) std::shared_ptr<const EnvironmentMap>()
+#define OPAL_VALUE_TRANSFORM(initial) Transform()
 
 // The parameters of a kind, as `emitter_point`, and visit_parameters, which calls visit(Parameter, value) for each.
 #define OPAL_VALUE_MEMBER(type, name, xml, initial, range, meaning)                                                    \
@@ -48,8 +51,8 @@ template <class Unused, class... Kinds> using VariantOf = std::variant<Kinds...>
 #define OPAL_EMITTER_ALTERNATIVE(name, traits) , emitter_##name
 using EmitterParameters = VariantOf<void OPAL_SCENE_EMITTERS(OPAL_EMITTER_ALTERNATIVE)>;
 
-// A texture that multiplies the intensity of a spot. Its u grows along x, its v along y, which are unit vectors across
-// the light's direction; its unit square is what the circle of the cutoff angle touches.
+// A texture that multiplies the intensity of a spot or a projector. Its u grows along x, its v along y, which are unit
+// vectors across the light's direction; its unit square is what the circle of the cutoff angle touches, or the image.
 struct LightTexture {
     Texture texture;
     Vec3 x, y;
@@ -58,7 +61,7 @@ struct LightTexture {
 struct Light {
     EmitterParameters parameters;
     SourcePlace place;
-    std::optional<LightTexture> texture{}; // of a spot alone
+    std::optional<LightTexture> texture{}; // of a spot or a projector
 
     uint kind() const { // EMITTER_*
         return std::visit([](const auto &own) { return own.kind; }, parameters);

@@ -1,6 +1,7 @@
 #include "scene/examples.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace opal::examples {
 
@@ -63,6 +64,25 @@ Mesh light(Shape shape, double radiance) {
     Mesh mesh = made_of(std::move(shape), diffuse(0));
     mesh.radiance = Color{radiance, radiance, radiance};
     return mesh;
+}
+
+std::shared_ptr<const EnvironmentMap> environment() {
+    constexpr double pi = std::numbers::pi;
+    constexpr int width = 16, height = 9;
+    const Vec3 sun = normalize({0.5, 0.6, 0.4});
+    Picture picture;
+    picture.width = width;
+    picture.height = height;
+    picture.channels = 3;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const double theta = pi * y / (height - 1), phi = 2 * pi * (x + 0.5) / width;
+            const Vec3 d{std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
+            const double glow = 20 * std::exp(12 * (dot(d, sun) - 1)), sky = d.y > 0 ? 1 : 0.1;
+            for (double color : {0.4 * sky + 1.0 * glow, 0.6 * sky + 0.9 * glow, 1.0 * sky + 0.7 * glow})
+                picture.floats.push_back(float(color));
+        }
+    return environment_of(std::move(picture), "an example");
 }
 
 } // namespace opal::examples

@@ -17,6 +17,9 @@ Bsdf dielectric(double int_ior = 1.5);
 Bsdf microfacet(double alpha, double kd = 0.3);        // index 1.5
 Bsdf phong(double exponent, double reflectance = 0.5); // kd = ks = reflectance; half of the samples are diffuse
 
+// A small sky with a sun, over dark ground.
+std::shared_ptr<const EnvironmentMap> environment();
+
 // Triangles without vertex normals, by their corners' indices.
 TriangleMesh mesh_of(const std::vector<Vec3> &positions, const std::vector<std::array<unsigned, 3>> &triangles);
 // The parallelogram o, o + u, o + u + v, o + v as two triangles; its front side is u x v.

@@ -54,7 +54,9 @@ std::span<const Parameter> emitter_parameters(uint kind) {
 }
 
 std::string text_of(const Parameter &parameter) {
-    return parameter.type == ParameterType::FLAG ? "true or false" : text_of(parameter.range);
+    return parameter.type == ParameterType::FLAG    ? "true or false"
+           : parameter.type == ParameterType::IMAGE ? "a file"
+                                                    : text_of(parameter.range);
 }
 
 std::string text_of(const ValueRange &range) {
@@ -72,11 +74,13 @@ std::string text_of_initial(const Parameter &parameter) {
         return parameter.initial != 0 ? "true" : "false";
     if (std::isnan(parameter.initial))
         return "required";
+    if (parameter.type == ParameterType::TRANSFORM)
+        return "none";
     return fmt::format("{:g}", parameter.initial);
 }
 
 const char *xml_tag(ParameterType type) {
-    static const char *const tags[] = {"color", "float", "boolean", "bsdf", "point", "vector"};
+    static const char *const tags[] = {"color", "float", "boolean", "bsdf", "point", "vector", "string", "transform"};
     return tags[static_cast<size_t>(type)];
 }
 

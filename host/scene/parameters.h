@@ -32,7 +32,7 @@ constexpr ValueRange INSIDE(double least, double most) { return {least, most, tr
 
 constexpr double REQUIRED = NAN; // in place of a default
 
-enum class ParameterType { COLOR, NUMBER, FLAG, BSDF, POINT, VECTOR };
+enum class ParameterType { COLOR, NUMBER, FLAG, BSDF, POINT, VECTOR, IMAGE, TRANSFORM };
 
 struct Parameter {
     ParameterType type;

@@ -134,7 +134,7 @@ Sphere Sphere::moved(const Transform &by) const {
 std::string Sphere::text() const { return "sphere"; }
 
 std::string why_no_sphere(const Transform &transform) {
-    constexpr double rounding = 1e-4; // relative: of files that give a matrix in few digits
+    constexpr double rounding = most_scale_error / 2; // of a length
     const Vec3 x = transform.vector({1, 0, 0}), y = transform.vector({0, 1, 0}), z = transform.vector({0, 0, 1});
     const double a = length(x), b = length(y), c = length(z), most = std::max({a, b, c});
     if (!std::isfinite(a + b + c) || transform.rows[3] != Transform().rows[3])

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -25,6 +26,14 @@ struct Extent {
     double radius() const;       // of the sphere through the corners; 0 if empty
 };
 
+// The values of an attribute of a mesh under its name, as vertex_color: of its positions, or of its triangles.
+struct MeshAttribute {
+    std::string name;
+    int channels = 3; // 1 or 3
+    bool of_faces = false;
+    LargeVector<float> values; // `channels` each
+};
+
 struct TriangleMesh {
     LargeVector<Vec3> positions;
     LargeVector<Vec3> normals; // unit; may be empty
@@ -35,6 +44,7 @@ struct TriangleMesh {
     LargeVector<std::array<float, 2>> uvs;        // texture coordinates, v upwards; may be empty
     // Indices of uvs, one array a triangle, OPAL_NONE where a corner has none; empty where no triangle has any.
     LargeVector<std::array<unsigned, 3>> uv_corners;
+    std::vector<std::shared_ptr<const MeshAttribute>> attributes; // those that textures ask for; of whole meshes only
 
     Extent extent() const; // of the positions that triangles use
     TriangleMesh moved(const Transform &by) const;
@@ -65,6 +75,10 @@ struct Sphere {
     Sphere moved(const Transform &by) const; // a similarity, which may mirror: that turns the normals
     std::string text() const;
 };
+
+// How unlike the scales along the axes may be, as shares of a squared length: files give matrices in few digits. It is
+// what Mitsuba's cameras allow.
+constexpr double most_scale_error = 1e-3;
 
 // Why a transform makes no sphere of a sphere, for a message; empty: it is a similarity, which may mirror.
 std::string why_no_sphere(const Transform &transform);

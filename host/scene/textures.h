@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/color.h"
+#include "base/large_vector.h"
 #include "textures/list.h"
 
 #include <array>
@@ -9,7 +10,6 @@
 #include <memory>
 #include <string>
 #include <variant>
-#include <vector>
 
 namespace opal {
 
@@ -25,9 +25,10 @@ struct CheckerboardTexture { // two by two squares in the unit square
 // The values of an image file: rows from the top, `channels` values a pixel, 1 (grey) or 3 (R, G, B; Rec. 709).
 struct Picture {
     int width = 0, height = 0, channels = 0;
-    std::vector<std::uint8_t> bytes; // of an image of 8 bits, as the file has them
-    std::vector<float> floats;       // of others: linear, or in [0, 1] as the file has them
-    bool encoded = false;            // whether the file means values of sRGB's curve
+    LargeVector<std::uint8_t> bytes;         // of an image of 8 bits, as the file has them
+    LargeVector<float> floats;               // of others: linear, or in [0, 1] as the file has them
+    bool encoded = false;                    // whether the file means values of sRGB's curve
+    std::size_t negative = 0, above_one = 0; // how many floats are
 };
 
 struct BitmapTexture {
@@ -36,8 +37,17 @@ struct BitmapTexture {
     bool nearest = false;
     uint wrap = WRAP_repeat;
     UvTransform to_uv = identity_uv;
+    bool full_precision = false; // values of 16 bits as they are, not rounded to half floats
 };
 
-using Texture = std::variant<CheckerboardTexture, BitmapTexture>;
+struct MeshAttribute;
+
+struct MeshAttributeTexture {
+    std::string name; // "vertex_color", "face_color"
+    double scale = 1;
+    std::shared_ptr<const MeshAttribute> attribute; // that of the mesh; null before the mesh is known
+};
+
+using Texture = std::variant<CheckerboardTexture, BitmapTexture, MeshAttributeTexture>;
 
 } // namespace opal

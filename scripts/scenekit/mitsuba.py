@@ -1,6 +1,7 @@
 """Scenes in the format of Mitsuba 3, and their PLY mesh."""
 import math
 
+from scenekit import sky
 from scenekit.shapes import polygons
 from scenekit.vec import add, cross, dot, norm, scale, sub
 from scenekit.write import LICENCE, number
@@ -252,16 +253,96 @@ SKY = """
 """
 
 
+SKY_MAP = """
+    <integrator type="path">
+        <integer name="max_depth" value="16"/>
+    </integrator>
+
+    <sensor type="perspective">
+        <float name="fov" value="34"/>
+        <transform name="to_world">
+            <lookat origin="3.3, 1.5, 8.2" target="0.1, 1.45, 0" up="0, 1, 0"/>
+        </transform>
+        <film type="hdrfilm">
+            <integer name="width" value="480"/>
+            <integer name="height" value="360"/>
+        </film>
+        <sampler type="independent">
+            <integer name="sample_count" value="64"/>
+        </sampler>
+    </sensor>
+
+    <!-- The first row of the map is up, +y. -->
+    <emitter type="envmap">
+        <string name="filename" value="textures/evening_sky.exr"/>
+        <float name="scale" value="1.2"/>
+    </emitter>
+
+    <shape type="rectangle">
+        <transform name="to_world">
+            <scale value="300"/>
+            <rotate x="1" angle="-90"/>
+        </transform>
+        <bsdf type="diffuse">
+            <rgb name="reflectance" value="0.42, 0.38, 0.32"/>
+        </bsdf>
+    </shape>
+
+    <shape type="obj">
+        <string name="filename" value="meshes/knot.obj"/>
+        <transform name="to_world">
+            <rotate x="1" angle="82"/>
+            <rotate y="1" angle="24"/>
+            <translate x="-0.55" y="1.58" z="-0.4"/>
+        </transform>
+        <bsdf type="diffuse">
+            <rgb name="reflectance" value="0.78, 0.74, 0.68"/>
+        </bsdf>
+    </shape>
+
+    <shape type="sphere">
+        <float name="radius" value="0.62"/>
+        <point name="center" value="1.75, 0.62, 0.7"/>
+        <bsdf type="conductor"/>
+    </shape>
+
+    <shape type="obj">
+        <string name="filename" value="meshes/torus.obj"/>
+        <transform name="to_world">
+            <scale value="0.42"/>
+            <translate x="0.45" y="0.1176" z="1.9"/>
+        </transform>
+        <bsdf type="diffuse">
+            <rgb name="reflectance" value="0.12, 0.32, 0.36"/>
+        </bsdf>
+    </shape>
+
+    <shape type="obj">
+        <string name="filename" value="meshes/vase.obj"/>
+        <transform name="to_world">
+            <scale value="0.5"/>
+            <translate x="-1.5" z="1.35"/>
+        </transform>
+        <bsdf type="diffuse">
+            <rgb name="reflectance" value="0.5, 0.16, 0.08"/>
+        </bsdf>
+    </shape>
+"""
+
+
 def scene_text(comment, body):
     return f'<?xml version="1.0"?>\n<!-- {comment}\n     {LICENCE} -->\n<scene version="3.0.0">{body}</scene>\n'
 
 
 def files():
-    """{path in scenes/: text}"""
+    """{path in scenes/: text or bytes}"""
     return {
         "meshes/star.ply": ply_text(stellated_dodecahedron(), "A small stellated dodecahedron, 60 triangles."),
         "mitsuba_shapes.xml": scene_text(
             "A file of Mitsuba 3 with each shape, obj, ply, sphere, rectangle and cube, and each material, under an area light.", SHAPES),
         "constant_sky.xml": scene_text(
             "Diffuse things under a sky of one radiance, in the format of Mitsuba 3: all shadows are soft.", SKY),
+        "textures/evening_sky.exr": sky.environment_map(),
+        "sky_over_model.xml": scene_text(
+            "Diffuse things and a mirror under an evening sky that is an image, in the format of Mitsuba 3.", SKY_MAP),
     }

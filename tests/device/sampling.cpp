@@ -44,6 +44,16 @@ TEST_CASE("Emitters draw by their densities", "[sampling][stat]") {
 TEST_CASE("Lights that are spheres, from near, far and inside", "[sampling][stat]") {
     require_all_pass(check_sphere_lights(Sources::embedded(), test_seed(125)));
 }
+TEST_CASE("Lights with a texture are sampled with the radiance that rays find", "[sampling]") {
+    require_all_pass(check_textured_lights(Sources::embedded(), test_seed(126)));
+}
+
+TEST_CASE("Environments have Mitsuba's radiance and density", "[sampling][environments]") {
+    require_all_pass(check_environments(Sources::embedded(), 0));
+}
+TEST_CASE("Environments draw by their densities", "[sampling][environments][stat]") {
+    require_all_pass(check_skies(Sources::embedded(), test_seed(126)));
+}
 
 TEST_CASE("A file dropped among the cases is tested, and a wrong one fails", "[sampling]") {
     const ScratchFolder folder;

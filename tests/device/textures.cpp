@@ -48,6 +48,29 @@ FlatScene textured_scene() {
     return scene;
 }
 
+// The image of 4 x 2 pixels, rows from the top, that Mitsuba 3.9.1 was asked of, and where.
+std::shared_ptr<const Picture> measured_picture() {
+    const auto picture = std::make_shared<Picture>();
+    picture->width = 4;
+    picture->height = 2;
+    picture->channels = 3;
+    for (float v : {0.f, 1.f})
+        for (float u : {0.f, 1.f, 2.f, 3.f})
+            for (float value : {0.125f + 0.125f * u, 0.25f + 0.25f * v, 0.0625f * u + 0.25f * v})
+                picture->floats.push_back(value);
+    return picture;
+}
+const std::vector<std::array<double, 2>> measured_at = {
+    {0.125, 0.25}, {0.125, 0.75}, {0.375, 0.25}, {0.25, 0.25}, {0.25, 0.5}, {0, 0},     {0.01, 0.25}, {0.99, 0.25},
+    {0.125, 0.01}, {0.125, 0.99}, {1.1, 0.25},   {-0.1, 0.25}, {-1.1, 0.3}, {2.3, 1.4}, {0.5, 0.5},   {0.77, 0.62}};
+
+// A white diffuse material with a texture.
+Bsdf textured(const BitmapTexture &texture) {
+    Bsdf material = bsdf_diffuse_record{.albedo = 1};
+    material.textures[bsdf_parameters(BSDF_diffuse)[0].texture_word] = texture;
+    return material;
+}
+
 } // namespace
 
 TEST_CASE("A texture multiplies its parameter, in the lanes that have one", "[textures]") {
@@ -106,54 +129,50 @@ TEST_CASE("A checkerboard has two by two squares, as Mitsuba has it", "[textures
 }
 
 TEST_CASE("A bitmap is looked up as Mitsuba does it", "[textures]") {
-    // Mitsuba 3.9.1: an image of 4 x 2 pixels, rows from the top; red and green of the look-ups at `at`.
-    const auto picture = std::make_shared<Picture>();
-    picture->width = 4;
-    picture->height = 2;
-    picture->channels = 3;
-    for (float v : {0.f, 1.f})
-        for (float u : {0.f, 1.f, 2.f, 3.f})
-            for (float value : {0.125f + 0.125f * u, 0.25f + 0.25f * v, 0.0625f * u + 0.25f * v})
-                picture->floats.push_back(value);
-    const std::vector<std::array<double, 2>> at = {
-        {0.125, 0.25}, {0.125, 0.75}, {0.375, 0.25}, {0.25, 0.25}, {0.25, 0.5}, {0, 0},     {0.01, 0.25}, {0.99, 0.25},
-        {0.125, 0.01}, {0.125, 0.99}, {1.1, 0.25},   {-0.1, 0.25}, {-1.1, 0.3}, {2.3, 1.4}, {0.5, 0.5},   {0.77, 0.62}};
+    const std::shared_ptr<const Picture> picture = measured_picture();
     struct Lookups {
         uint wrap;
         bool nearest;
-        std::vector<double> red, green;
+        std::vector<double> red, green, blue;
     };
     const std::vector<Lookups> table = {
         {WRAP_repeat,
          false,
          {0.125, 0.125, 0.25, 0.1875, 0.1875, 0.3125, 0.2975, 0.3275, 0.125, 0.125, 0.1625, 0.4625, 0.4625, 0.2125,
           0.3125, 0.4475},
-         {0.25, 0.5, 0.25, 0.25, 0.375, 0.375, 0.25, 0.25, 0.37, 0.38, 0.25, 0.25, 0.275, 0.325, 0.375, 0.435}},
+         {0.25, 0.5, 0.25, 0.25, 0.375, 0.375, 0.25, 0.25, 0.37, 0.38, 0.25, 0.25, 0.275, 0.325, 0.375, 0.435},
+         {0, 0.25, 0.0625, 0.03125, 0.15625, 0.21875, 0.08625001, 0.10125, 0.12, 0.13, 0.01874998, 0.16875, 0.19375,
+          0.11875, 0.21875, 0.34625}},
         {WRAP_repeat,
          true,
          {0.125, 0.125, 0.25, 0.25, 0.25, 0.125, 0.125, 0.5, 0.125, 0.125, 0.125, 0.5, 0.5, 0.25, 0.375, 0.5},
-         {0.25, 0.5, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25, 0.25, 0.5, 0.5}},
+         {0.25, 0.5, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25, 0.25, 0.5, 0.5},
+         {0, 0.25, 0.0625, 0.0625, 0.3125, 0, 0, 0.1875, 0, 0.25, 0, 0.1875, 0.1875, 0.0625, 0.375, 0.4375}},
         {WRAP_mirror,
          false,
          {0.125, 0.125, 0.25, 0.1875, 0.1875, 0.125, 0.125, 0.5, 0.125, 0.125, 0.5, 0.125, 0.5, 0.2125, 0.3125, 0.4475},
-         {0.25, 0.5, 0.25, 0.25, 0.375, 0.25, 0.25, 0.25, 0.25, 0.5, 0.25, 0.25, 0.275, 0.425, 0.375, 0.435}},
+         {0.25, 0.5, 0.25, 0.25, 0.375, 0.25, 0.25, 0.25, 0.25, 0.5, 0.25, 0.25, 0.275, 0.425, 0.375, 0.435},
+         {0, 0.25, 0.0625, 0.03125, 0.15625, 0, 0, 0.1875, 0, 0.25, 0.1875, 0, 0.2125, 0.21875, 0.21875, 0.34625}},
         {WRAP_mirror,
          true,
          {0.125, 0.125, 0.25, 0.25, 0.25, 0.125, 0.125, 0.5, 0.125, 0.125, 0.5, 0.125, 0.5, 0.25, 0.375, 0.5},
-         {0.25, 0.5, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25, 0.5, 0.5, 0.5}},
+         {0.25, 0.5, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25, 0.5, 0.5, 0.5},
+         {0, 0.25, 0.0625, 0.0625, 0.3125, 0, 0, 0.1875, 0, 0.25, 0.1875, 0, 0.1875, 0.3125, 0.375, 0.4375}},
         {WRAP_clamp,
          false,
          {0.125, 0.125, 0.25, 0.1875, 0.1875, 0.125, 0.125, 0.5, 0.125, 0.125, 0.5, 0.125, 0.125, 0.5, 0.3125, 0.4475},
-         {0.25, 0.5, 0.25, 0.25, 0.375, 0.25, 0.25, 0.25, 0.25, 0.5, 0.25, 0.25, 0.275, 0.5, 0.375, 0.435}},
+         {0.25, 0.5, 0.25, 0.25, 0.375, 0.25, 0.25, 0.25, 0.25, 0.5, 0.25, 0.25, 0.275, 0.5, 0.375, 0.435},
+         {0, 0.25, 0.0625, 0.03125, 0.15625, 0, 0, 0.1875, 0, 0.25, 0.1875, 0, 0.02500001, 0.4375, 0.21875, 0.34625}},
         {WRAP_clamp,
          true,
          {0.125, 0.125, 0.25, 0.25, 0.25, 0.125, 0.125, 0.5, 0.125, 0.125, 0.5, 0.125, 0.125, 0.5, 0.375, 0.5},
-         {0.25, 0.5, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25, 0.5, 0.5, 0.5}},
+         {0.25, 0.5, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25, 0.5, 0.5, 0.5},
+         {0, 0.25, 0.0625, 0.0625, 0.3125, 0, 0, 0.1875, 0, 0.25, 0.1875, 0, 0, 0.4375, 0.375, 0.4375}},
     };
     std::vector<Bsdf> materials;
     const size_t albedo = bsdf_parameters(BSDF_diffuse)[0].texture_word;
     for (const Lookups &lookups : table)
-        for (const auto &[u, v] : at) { // the probe asks at (0, 0)
+        for (const auto &[u, v] : measured_at) { // the probe asks at (0, 0)
             Bsdf &material = materials.emplace_back(bsdf_diffuse_record{.albedo = 1});
             material.textures[albedo] = BitmapTexture{.picture = picture,
                                                       .nearest = lookups.nearest,
@@ -164,13 +183,14 @@ TEST_CASE("A bitmap is looked up as Mitsuba does it", "[textures]") {
     for (int lanes : tested_lanes()) {
         KernelProbe probe = probe_of(scene, lanes, Sources::embedded());
         for (size_t i = 0; i < materials.size(); i++) {
-            const Lookups &lookups = table[i / at.size()];
-            const size_t k = i % at.size();
-            INFO(lanes << " lanes, wrap " << lookups.wrap << (lookups.nearest ? " nearest" : "") << ", uv " << at[k][0]
-                       << " " << at[k][1]);
+            const Lookups &lookups = table[i / measured_at.size()];
+            const size_t k = i % measured_at.size();
+            INFO(lanes << " lanes, wrap " << lookups.wrap << (lookups.nearest ? " nearest" : "") << ", uv "
+                       << measured_at[k][0] << " " << measured_at[k][1]);
             const Planes f = probe.bsdf_eval(unsigned(i), {0, 0, 1}, std::vector{Vec3{0, 0, 1}});
             CHECK(f.at(EVAL_R, 0) * std::numbers::pi == Approx(lookups.red[k]).margin(1e-6));
             CHECK(f.at(EVAL_G, 0) * std::numbers::pi == Approx(lookups.green[k]).margin(1e-6));
+            CHECK(f.at(EVAL_B, 0) * std::numbers::pi == Approx(lookups.blue[k]).margin(1e-6));
         }
     }
 }
@@ -194,6 +214,109 @@ TEST_CASE("Bytes of a bitmap are decoded from sRGB unless it is raw", "[textures
     for (unsigned i = 0; i < materials.size(); i++) {
         const Planes f = probe.bsdf_eval(i, {0, 0, 1}, std::vector{Vec3{0, 0, 1}});
         CHECK(f.at(EVAL_B, 0) * std::numbers::pi == Approx(i < 3 ? decoded[i] : raw[i - 3]).margin(1e-6));
+    }
+}
+
+TEST_CASE("to_uv maps texture coordinates as Mitsuba does it", "[textures]") {
+    struct Row {
+        UvTransform to_uv;
+        const char *texels; // at measured_at, by their indices in rows from the top
+    };
+    // Mitsuba 3.9.1, nearest, repeat. The looks at the ends of texels that a turn by 90 degrees moves are left out.
+    const std::vector<Row> table = {
+        {{{{10, 0, 0}, {0, 10, 0}}}, "5576204715440002"},
+        {{{{2, 0, 0}, {0, 3, 0}}}, "5176604715477246"},
+        {{{{1, 0, 0.25}, {0, 1, 0.1}}}, "1522611011100674"},
+        {{{{0, -1, 0}, {1, 0, 0}}}, "--------30--62-5"},
+        {{{{0.8660254, -0.5, 0}, {0.5, 0.8660254, 0}}}, "36007-3606737145"},
+        {{{{2, 0, 0.25}, {0, 2, 0}}}, "6647315426544713"},
+        {{{{2, 0, 0.5}, {0, 2, 0}}}, "7754026537655420"},
+    };
+    for (const Row &row : table) {
+        const Bsdf material = textured({.picture = measured_picture(), .nearest = true, .to_uv = row.to_uv});
+        for (size_t k = 0; k < measured_at.size(); k++) {
+            if (row.texels[k] == '-')
+                continue;
+            INFO(row.to_uv[0][0] << " " << row.to_uv[0][1] << ", uv " << measured_at[k][0] << " " << measured_at[k][1]);
+            TriangleMesh mesh = examples::quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}); // all of one place in the texture
+            mesh.uvs = {{float(measured_at[k][0]), float(measured_at[k][1])}};
+            mesh.uv_corners.assign(mesh.triangles.size(), {0, 0, 0});
+            SceneDescription scene;
+            scene.camera = examples::camera({0, 0, 5}, {0, 0, 0}, 20);
+            scene.camera.width = scene.camera.height = 2;
+            scene.lights = {{emitter_constant{.radiance = {1, 1, 1}}, {}}};
+            scene.meshes = {examples::made_of(std::move(mesh), material)};
+            const Film film =
+                render(with_strategy(
+                           scene, {{"integrator", "direct_lighting"}, {"lighting", "bsdf"}, {"hemisphere", "cosine"}}),
+                       1, 1);
+            const int texel = row.texels[k] - '0';
+            CHECK(sample_of(film, 0).mean == Approx(0.125 + 0.125 * (texel % 4)).margin(1e-6));
+            CHECK(sample_of(film, 1).mean == Approx(0.25 + 0.25 * (texel / 4)).margin(1e-6));
+        }
+    }
+}
+
+TEST_CASE("Values of 16 bits are half floats, as Mitsuba holds them, but for its format variant", "[textures]") {
+    const std::vector<int> bytes = {0, 1, 5, 10, 11, 20, 60, 128, 200, 254, 255}; // times 257
+    // Mitsuba 3.9.1
+    const std::vector<double> decoded = {0,
+                                         0.0003035069,
+                                         0.001517296,
+                                         0.003034592,
+                                         0.003347397,
+                                         0.006996155,
+                                         0.04519653,
+                                         0.2158203,
+                                         0.5776367,
+                                         0.9912109,
+                                         1};
+    const std::vector<double> raw = {0,         0.003921509, 0.01960754, 0.03921509, 0.04315186, 0.07843018,
+                                     0.2353516, 0.5019531,   0.7841797,  0.9960938,  1};
+    const std::vector<double> exact = {
+        0,         0.000303527, 0.001517635, 0.00303527, 0.003346541, 0.006995399, 0.04518617,
+        0.2158604, 0.5775807,   0.9911022,   1};
+    const auto picture = std::make_shared<Picture>();
+    picture->width = int(bytes.size());
+    picture->height = 1;
+    picture->channels = 1;
+    picture->encoded = true;
+    for (int byte : bytes)
+        picture->floats.push_back(float(byte) / 255);
+    std::vector<Bsdf> materials;
+    for (const auto &[is_raw, full] : {std::pair(false, false), {true, false}, {false, true}})
+        for (size_t i = 0; i < bytes.size(); i++)
+            materials.push_back(textured({.picture = picture,
+                                          .raw = is_raw,
+                                          .nearest = true,
+                                          .to_uv = {{{1, 0, (double(i) + 0.5) / double(bytes.size())}, {0, 1, 0.5}}},
+                                          .full_precision = full}));
+    KernelProbe probe = probe_of(scene_of_bsdfs(materials), device().info.native_lanes, Sources::embedded());
+    for (unsigned i = 0; i < materials.size(); i++) {
+        const std::vector<double> &values = i < bytes.size() ? decoded : i < 2 * bytes.size() ? raw : exact;
+        const Planes f = probe.bsdf_eval(i, {0, 0, 1}, std::vector{Vec3{0, 0, 1}});
+        CHECK(f.at(EVAL_R, 0) * std::numbers::pi == Approx(values[i % bytes.size()]).margin(1e-7));
+    }
+}
+
+TEST_CASE("Where one number is wanted, a colour is its luminance", "[textures]") {
+    const auto picture = std::make_shared<Picture>();
+    picture->width = picture->height = 1; // one row and one column: the same everywhere
+    picture->channels = 3;
+    picture->bytes = {200, 100, 50};
+    picture->encoded = true;
+    const std::vector<double> numbers = {0.216275, 0.4614065}; // Mitsuba 3.9.1: decoded, raw
+    std::vector<Bsdf> materials;
+    for (const bool is_raw : {false, true}) {
+        Bsdf &mask = materials.emplace_back(bsdf_mask_record{.opacity = 1});
+        mask.children = {bsdf_diffuse_record{.albedo = 1}};
+        mask.textures[bsdf_parameters(BSDF_mask)[0].texture_word] =
+            BitmapTexture{.picture = picture, .raw = is_raw, .to_uv = {{{1, 0, 0.3}, {0, 1, -7.9}}}};
+    }
+    KernelProbe probe = probe_of(scene_of_bsdfs(materials), device().info.native_lanes, Sources::embedded());
+    for (unsigned i = 0; i < materials.size(); i++) {
+        const Planes f = probe.bsdf_eval(i, {0, 0, 1}, std::vector{Vec3{0, 0, 1}});
+        CHECK(f.at(EVAL_R, 0) * std::numbers::pi == Approx(numbers[i]).margin(1e-6));
     }
 }
 

@@ -187,6 +187,11 @@ void check(const TriangleMesh &mesh) {
     for (const auto &triangle : mesh.uv_corners)
         for (const unsigned uv : triangle)
             require(uv == OPAL_NONE || uv < mesh.uvs.size(), "a corner's uv is one");
+    for (const auto &attribute : mesh.attributes) {
+        const size_t owners = attribute->of_faces ? mesh.triangles.size() : mesh.positions.size();
+        require(attribute->values.size() == owners * size_t(attribute->channels), "attributes have all values");
+        require(all_finite(attribute->values), "attributes are finite");
+    }
 }
 
 bool has_finite_lights(const FlatScene &scene) {

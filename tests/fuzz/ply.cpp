@@ -17,7 +17,8 @@ namespace {
 // The last byte says how the mesh is used.
 void read(const ServedFile &file, unsigned char use) {
     const Transform to_world = use & 1 ? Transform::scale({1e3, -1, 1e-3}) : Transform();
-    TriangleMesh mesh = read_ply(file.path(), to_world);
+    const std::vector<std::string> attributes = {"vertex_color", "vertex_w", "face_color"};
+    TriangleMesh mesh = read_ply(file.path(), to_world, nullptr, attributes);
     check(mesh);
     if (use & 2)
         mesh = mitsuba::finished_mesh(
@@ -25,7 +26,11 @@ void read(const ServedFile &file, unsigned char use) {
             {.face_normals = (use & 4) != 0, .flip_normals = (use & 8) != 0, .flip_tex_coords = (use & 16) != 0});
     check(mesh);
     SceneDescription scene;
-    scene.meshes.emplace_back().shape = std::move(mesh);
+    scene.meshes.emplace_back();
+    if (!mesh.attributes.empty())
+        scene.meshes[0].bsdf.textures[bsdf_parameters(BSDF_diffuse)[0].texture_word] =
+            MeshAttributeTexture{.name = mesh.attributes[0]->name, .attribute = mesh.attributes[0]};
+    scene.meshes[0].shape = std::move(mesh);
     if (use & 32)
         scene.meshes[0].radiance = Color{1, 1, 1};
     check(flatten(scene, use & 64 ? 16 : 1));
@@ -142,6 +147,10 @@ const TextFormat format = {.words = [](std::string_view text) { return separated
                                             "t",
                                             "u",
                                             "v",
+                                            "red",
+                                            "green",
+                                            "blue",
+                                            "w_0",
                                             "vertex_indices",
                                             "vertex_index",
                                             "comment",

@@ -1,5 +1,6 @@
 // The tables of lights.
 #include "flatten/emitter_kinds.h"
+#include "flatten/texture_mean.h"
 #include "support/error_of.h"
 #include "support/plain_scenes.h"
 
@@ -7,6 +8,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <random>
 
@@ -170,7 +172,9 @@ TEST_CASE("an environment sheds its power on the scene's bounding sphere, and th
     CHECK(scene.emitters[1].probability == Approx(sky / (sky + luminance(power))));
 
     description.lights.push_back({emitter_constant{bright}, {"a.xml", 7, 1}});
-    CHECK_THAT(test::error_of([&] { flatten(description, 8); }), Catch::StartsWith("a.xml:7:1: a second environment"));
+    description.lights[2].place = {"a.xml", 5, 2};
+    CHECK(test::error_of([&] { flatten(description, 8); }) ==
+          "a.xml:7:1: a second environment: rays that leave the scene meet one only; the first is at a.xml:5:2");
 }
 
 TEST_CASE("a spot's power is the integral of its falloff", "[emitters]") {
@@ -207,6 +211,64 @@ TEST_CASE("a spot's power is the integral of its falloff", "[emitters]") {
     CHECK(power_of(Light{emitter_spot{{}, {0, 0, 1}, bright, 1e-7, 0, false}, {}}, 1) ==
           Approx(luminance(bright) * pi * std::pow(1e-7 * pi / 180, 2) / 3)); // of a cone this thin a third
     CHECK(is_black(Light{emitter_spot{{}, {0, 0, 1}, bright, 0, 0, false}, {}}));
+}
+
+TEST_CASE("a projector sheds what its image gets at distance 1", "[emitters]") {
+    const double width = 2 * std::tan(pi / 6);
+    const Light light{emitter_projector{{}, {0, 0, 2}, {}, {1, 1, 1}, 60, 2}, {}};
+    CHECK(power_of(light, 7) == Approx(pi * width * width / 2));
+}
+
+TEST_CASE("textured lights are chosen by the mean of the texture over their surface", "[emitters]") {
+    const auto picture = std::make_shared<Picture>(); // black but for the right half of the top row
+    picture->width = picture->height = 2;
+    picture->channels = 1;
+    picture->floats = {0, 1, 0, 0};
+    const BitmapTexture corner{.picture = picture, .nearest = true};
+    BitmapTexture away = corner;
+    away.to_uv = {{{0.25, 0, 0}, {0, 0.25, 0.5}}}; // no point of the surface sees the white texel
+    TriangleMesh half = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
+    half.uvs = {{0.5f, 0}, {1, 0}, {1, 0.5f}}; // in the white texel
+    half.uv_corners = {{0, 1, 2}};
+    std::vector<Mesh> meshes = {light(Parallelogram{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {1, 1, 1}),
+                                light(half, {1, 1, 1}), light(Sphere{{3, 0, 0}, 0.5}, {1, 1, 1}),
+                                light(Parallelogram{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}, {1, 1, 1})};
+    for (Mesh &mesh : meshes)
+        mesh.texture = corner;
+    meshes[3].texture = away;
+    SceneDescription description = scene_of(meshes);
+    description.strategy[AXIS_emitter_choice] = CHOICE_emitter_choice_power;
+    const FlatScene scene = flatten(description, 8);
+    REQUIRE(scene.emitters.size() == 4);
+    const std::vector<double> powers = {0.25, 0.5, pi / 4, 0.25}; // of the last the mean over the unit square
+    double all = 0;
+    for (const double power : powers)
+        all += power;
+    for (size_t i = 0; i < powers.size(); i++)
+        CHECK(scene.emitters[i].probability == Approx(powers[i] / all).epsilon(1e-3));
+}
+
+TEST_CASE("the host looks textures up as the device does", "[emitters]") {
+    // Mitsuba 3.9.1, as in tests/device/textures.cpp: red of an image of 4 x 2 pixels.
+    const auto picture = std::make_shared<Picture>();
+    picture->width = 4;
+    picture->height = 2;
+    picture->channels = 1;
+    picture->floats = {0.125f, 0.25f, 0.375f, 0.5f, 0.125f, 0.25f, 0.375f, 0.5f};
+    const auto red = [&](uint wrap, bool nearest, double u, double v) {
+        return color_at(BitmapTexture{.picture = picture, .nearest = nearest, .wrap = wrap}, u, v)[0];
+    };
+    CHECK(red(WRAP_repeat, false, 0.25, 0.5) == Approx(0.1875));
+    CHECK(red(WRAP_repeat, false, -1.1, 0.3) == Approx(0.4625));
+    CHECK(red(WRAP_repeat, true, -1.1, 0.3) == Approx(0.5));
+    CHECK(red(WRAP_mirror, false, 2.3, 1.4) == Approx(0.2125));
+    CHECK(red(WRAP_mirror, true, 1.1, 0.25) == Approx(0.5));
+    CHECK(red(WRAP_clamp, false, 0.77, 0.62) == Approx(0.4475));
+    CHECK(red(WRAP_clamp, true, 2.3, 1.4) == Approx(0.5));
+    CHECK(std::isfinite(red(WRAP_mirror, false, NAN, 1e300)));
+    const CheckerboardTexture squares;
+    CHECK(color_at(squares, 0.5, 0.1)[0] == 0.4);
+    CHECK(color_at(squares, -0.1, 0.1)[0] == 0.2);
 }
 
 TEST_CASE("spots and directional lights in the flattened units", "[emitters]") {

@@ -83,7 +83,7 @@ TEST_CASE("files are told by their bytes, whatever their names", "[file_kind]") 
         {"Kaydara FBX Binary  \0"s, "an FBX scene", FileKind::other},
         {"BLENDER-v300", "a Blender file", FileKind::other},
         {"OFF\n3 1 0\n", "an OFF mesh", FileKind::other},
-        {"\x89PNG\r\n\x1a\n", "a PNG image", FileKind::other},
+        {"\x89PNG\r\n\x1a\n", "a PNG image", FileKind::png},
         {"version https://git-lfs.github.com/spec/v1\n", "a pointer that stands for the real file, by Git LFS",
          FileKind::other},
         {"<?xml version='1.0'?>\n<COLLADA version='1.4.1'>", "a COLLADA scene", FileKind::other},

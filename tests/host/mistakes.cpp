@@ -119,7 +119,7 @@ TEST_CASE_METHOD(MistakesFixture, "tests tell all their mistakes", "[mistakes]")
 
 TEST_CASE_METHOD(MistakesFixture, "lenient: unknown attributes, properties, tags and children warn", "[mistakes]") {
     const std::string body = camera + light + "<mesh type='parallelogram' class='a'>\n" + square +
-                             "<float name='size' value='1'/>\n<texture type='checker'/>\n<camera type='perspective'/>\n"
+                             "<float name='size' value='1'/>\n<medium type='fog'/>\n<camera type='perspective'/>\n"
                              "<transform name='toWorld' order='xyz'>\n<skew value='1'/></transform></mesh>\n";
     const Lines lines = warnings_of(body);
     REQUIRE(lines.size() == 6);
@@ -127,7 +127,7 @@ TEST_CASE_METHOD(MistakesFixture, "lenient: unknown attributes, properties, tags
     std::sort(sorted.begin(), sorted.end());
     CHECK_THAT(sorted[0], Catch::StartsWith(":4:1: unknown attribute 'class' of <mesh>"));
     CHECK_THAT(sorted[1], Catch::StartsWith(":5:101: unknown property 'size'"));
-    CHECK_THAT(sorted[2], Catch::StartsWith(":6:1: unknown tag 'texture'"));
+    CHECK_THAT(sorted[2], Catch::StartsWith(":6:1: unknown tag 'medium'"));
     CHECK_THAT(sorted[3], Catch::StartsWith(":7:1: no <camera> may stand in <mesh>"));
     CHECK_THAT(sorted[4], Catch::StartsWith(":8:1: unknown attribute 'order' of <transform>"));
     CHECK_THAT(sorted[5], Catch::StartsWith(":9:1: unknown operation 'skew'"));
@@ -150,8 +150,8 @@ TEST_CASE_METHOD(MistakesFixture, "lenient: unknown types get something in their
         check(camera + light + mesh + "<bsdf type='disney'><float name='metallic' value='1'/></bsdf></mesh>",
               ":4:128: unknown bsdf type 'disney'", "a diffuse one of albedo 0.5 stands in for it");
     CHECK(disney.meshes.at(1).bsdf.as<bsdf_diffuse_record>().albedo.value[0] == 0.5f);
-    CHECK(check(camera + light + "<emitter type='envmap'><string name='filename' value='a.exr'/></emitter>",
-                ":4:1: unknown emitter type 'envmap'", "it is left out")
+    CHECK(check(camera + light + "<emitter type='sunsky'><string name='filename' value='a.exr'/></emitter>",
+                ":4:1: unknown emitter type 'sunsky'", "it is left out")
               .lights.empty());
     CHECK_FALSE(check(camera + light + mesh + "<emitter type='laser'/></mesh>", "unknown emitter type 'laser'",
                       "it is left out")

@@ -185,6 +185,16 @@ TEST_CASE_METHOD(MitsubaFixture, "lights: units, places and directions", "[mitsu
     CHECK(near(normalize(aimed.direction), {0, -1, 0}));
     CHECK(aimed.beam_width == 30);
 
+    const auto projector = light<emitter_projector>("projector");
+    CHECK(near(projector.direction, {0, 0, 1}));
+    CHECK(near(projector.up, {0, 1, 0}));
+    CHECK(projector.irradiance == Color{1, 1, 1});
+    CHECK(projector.fov == Approx(34.02).margin(0.01)); // that of a lens of 50 mm, across a square
+    CHECK(light<emitter_projector>("projector", "<float name='fov' value='40'/>").fov == Approx(40));
+    const auto large = light<emitter_projector>("projector", transform("<scale value='2'/>") + // as Mitsuba has it
+                                                                 "<float name='scale' value='3'/>");
+    CHECK(large.irradiance == Color{6, 6, 6});
+
     CHECK(near(light<emitter_directional>("directional").direction, {0, 0, 1}));
     CHECK(light<emitter_directional>("directional").irradiance == Color{1, 1, 1});
     const auto sun = light<emitter_directional>("directional", "<vector name='direction' value='0 0 -2'/>"
@@ -564,8 +574,8 @@ TEST_CASE_METHOD(MitsubaFixture, "what Opal cannot render is an error with its p
     };
     const std::vector<Row> rows = {
         {in_shape(transform("<scale x='2'/>")),
-         ":3:1: property 'to_world': a sphere must be scaled alike along all axes"},
-        {in_shape(transform("<matrix value='1 0.5 0 0 1 0 0 0 1'/>")), ":3:1: property 'to_world': a sphere must be"},
+         ":3:1: property 'to_world': it scales a sphere by 2, 1 and 1 along its axes"},
+        {in_shape(transform("<matrix value='1 0.5 0 0 1 0 0 0 1'/>")), ":3:1: property 'to_world': it scales a sphere"},
         {in_shape("<float name='radius' value='-1'/>"), ":3:1: property 'radius': must be above 0"},
         {in_shape("<float name='raduis' value='1'/>"),
          ":3:1: unknown property 'raduis' of shape 'sphere'; did you mean 'radius'?"},
@@ -669,7 +679,7 @@ TEST_CASE_METHOD(MitsubaFixture, "what Opal cannot render is an error with its p
 
 TEST_CASE_METHOD(MitsubaFixture, "plug-ins that Opal does not have are all named in one run", "[mitsuba]") {
     const std::string body = "<shape type='cylinder'/>\n<shape type='cylinder'><bsdf type='plastic'/></shape>\n"
-                             "<bsdf type='plastic' id='b'/>\n<emitter type='envmap'><string name='filename' value='x'/>"
+                             "<bsdf type='plastic' id='b'/>\n<emitter type='sunsky'><string name='filename' value='x'/>"
                              "</emitter>\n<medium type='homogeneous' id='m'/>\n"
                              "<shape type='sphere'><bsdf type='diffuse'><texture name='reflectance' type='volume'>"
                              "<string name='filename' value='x.png'/></texture></bsdf></shape>\n"
@@ -681,9 +691,9 @@ TEST_CASE_METHOD(MitsubaFixture, "plug-ins that Opal does not have are all named
         ":3:24: unknown bsdf type 'plastic' (2 in the scene); available: diffuse, dielectric, conductor, twosided, "
         "mask, "
         "null\n"
-        ":5:1: unknown emitter type 'envmap'; available: area, point, spot, directional, constant\n"
+        ":5:1: unknown emitter type 'sunsky'; available: area, point, spot, directional, constant, envmap\n"
         ":6:1: unknown medium type 'homogeneous'; available: none\n"
-        ":7:43: unknown texture type 'volume'; available: checkerboard, bitmap\n"
+        ":7:43: unknown texture type 'volume'; available: checkerboard, bitmap, mesh_attribute\n"
         ":8:1: unknown integrator type 'ptracer'; available: path, volpath, volpathmis, direct, moment, aov\n"
         ":8:29: unknown sensor type 'batch'; available: perspective, thinlens, orthographic\n"
         ":9:28: unknown film type 'specfilm'; available: hdrfilm\n"
@@ -722,6 +732,110 @@ TEST_CASE_METHOD(MitsubaFixture, "lenient: what stands in for a plug-in is said"
                Catch::StartsWith(":4:41: unknown texture type 'volume'") && Catch::EndsWith("; 0.5 stands in for it"));
     CHECK(error_in("<emitter type='constant'><texture name='radiance' type='checkerboard'/></emitter>") ==
           ":2:26: property 'radiance': Opal has no texture here yet");
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "objects that nothing uses are looked at, too", "[mitsuba]") {
+    CHECK(error_in(lit + "\n<film type='specfilm' id='f'/>\n<sampler type='halton' id='s'/>\n<rfilter type='sinc' "
+                         "id='r'/>") ==
+          ":3:1: unknown film type 'specfilm'; available: hdrfilm\n"
+          ":4:1: unknown sampler type 'halton'; available: independent, stratified, multijitter, orthogonal, "
+          "ldsampler\n"
+          ":5:1: unknown rfilter type 'sinc'; available: box, tent, gaussian, mitchell, catmullrom, lanczos");
+    CHECK_THAT(error_in(lit + "<film type='hdrfilm' id='f'><integer name='widht' value='3'/></film>"),
+               Catch::StartsWith(":2:55: unknown property 'widht' of film 'hdrfilm'; available: width"));
+    // One that a sensor refers to is looked at once.
+    CHECK(error_in(lit + "<sampler type='independent' id='s'>\n<integer name='sample_count' value='0'/></sampler>"
+                         "<sensor type='perspective'><ref id='s'/></sensor>") ==
+          ":3:1: property 'sample_count': must be at least 1 sample per pixel");
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "an area light may stand in the scene if a shape refers to it", "[mitsuba]") {
+    const std::string lamp = "<emitter type='area' id='lamp'><rgb name='radiance' value='1 2 3'/></emitter>\n";
+    const std::string ball = "<shape type='sphere'><ref id='lamp'/></shape>\n";
+    for (const std::string &body : {lamp + ball, ball + lamp}) {
+        const SceneDescription scene = load(body);
+        CHECK(scene.lights.empty());
+        REQUIRE(scene.meshes.size() == 1);
+        CHECK(scene.meshes[0].radiance == Color{1, 2, 3});
+    }
+    CHECK(load(lamp + ball + ball).meshes.at(1).radiance == Color{1, 2, 3});
+    CHECK_THAT(error_in(lamp), Catch::StartsWith(":2:1: emitter 'area' must stand in a <shape>"));
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "lenient: files that are missing are named, with what stands in for them",
+                 "[mitsuba]") {
+    const std::string body =
+        lit + "<shape type='ply'>\n<string name='filename' value='b.ply'/></shape><shape type='cube'><bsdf "
+              "type='diffuse'><texture name='reflectance' type='bitmap'>\n<string name='filename' "
+              "value='b.png'/></texture></bsdf></shape>";
+    CHECK_THAT(error_in(body),
+               Catch::StartsWith(":3:1: property 'filename': ") && Catch::Contains("\n:4:1: property 'filename': "));
+    const SceneDescription scene = load(body, {.lenient = true});
+    REQUIRE(scene.meshes.size() == 1);
+    CHECK(scene.meshes[0].bsdf.textures.empty());
+    CHECK(scene.meshes[0].bsdf.as<bsdf_diffuse_record>().albedo.value[0] == 0.5f);
+    const std::vector<std::string> told = warnings_of(body, {.lenient = true});
+    REQUIRE(told.size() == 2);
+    std::vector<std::string> sorted = told;
+    std::ranges::sort(sorted);
+    CHECK_THAT(sorted[0],
+               Catch::StartsWith(":3:1: property 'filename': ") && Catch::EndsWith("; the shape is left out"));
+    CHECK_THAT(sorted[1],
+               Catch::StartsWith(":4:1: property 'filename': ") && Catch::EndsWith("; 0.5 stands in for the texture"));
+}
+
+TEST_CASE_METHOD(MitsubaFixture, "textures of mesh attributes have the attribute of the shape", "[mitsuba]") {
+    const std::string head =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+    const std::string tail = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    scratch.write("b.ply", head + "property float red\nproperty float green\nproperty float blue\n" + tail +
+                               "0 0 0 0.25 0.5 1\n1 0 0 0 0 0\n0 1 0 1 1 1\n3 0 1 2\n");
+    const auto material = [](const std::string &name, const std::string &more = "") {
+        return "<bsdf type='diffuse' id='b'><texture name='reflectance' type='mesh_attribute'><string name='name' "
+               "value='" +
+               name + "'/>" + more + "</texture></bsdf>\n";
+    };
+    const std::string ply = "<shape type='ply'><string name='filename' value='b.ply'/><ref id='b'/></shape>\n";
+    const SceneDescription scene = load(material("vertex_color", "<float name='scale' value='0.5'/>") + ply + ply);
+    REQUIRE(scene.meshes.size() == 2);
+    std::vector<std::shared_ptr<const MeshAttribute>> found;
+    for (const Mesh &mesh : scene.meshes) {
+        const auto texture =
+            std::get<MeshAttributeTexture>(mesh.bsdf.textures.at(bsdf_parameters(BSDF_diffuse)[0].texture_word));
+        CHECK(texture.scale == 0.5);
+        REQUIRE(texture.attribute);
+        CHECK(texture.attribute->channels == 3);
+        CHECK(texture.attribute->values[2] == 1);
+        CHECK(std::get<TriangleMesh>(mesh.shape).attributes.at(0) == texture.attribute);
+        found.push_back(texture.attribute);
+    }
+    CHECK(found[0] != found[1]); // each of its own mesh
+    // Nobody reads what no texture names.
+    CHECK(std::get<TriangleMesh>(shape("ply", "<string name='filename' value='b.ply'/>").shape).attributes.empty());
+
+    const std::string lacking =
+        ": the shape has no attribute 'vertex_color', which a texture of its material or light names";
+    const std::string cube = "<shape type='cube'><ref id='b'/></shape>",
+                      ball = "<shape type='sphere'><ref id='b'/></shape>";
+    CHECK_THAT(error_in(material("vertex_color") + cube), Catch::StartsWith(":3:1" + lacking));
+    CHECK_THAT(error_in(material("vertex_color") + ply + ball), Catch::StartsWith(":4:1" + lacking));
+    CHECK_THAT(error_in(material("vertex_foo") + ply),
+               Catch::StartsWith(":3:1: the shape has no attribute 'vertex_foo'"));
+    CHECK_THAT(error_in(material("color") + ply),
+               Catch::Contains("property 'name': the texture needs the name of an attribute"));
+    CHECK_THAT(error_in(material("vertex_color", "<transform name='to_uv'/>") + ply),
+               Catch::Contains("unknown property 'to_uv' of texture 'mesh_attribute'"));
+    CHECK_THAT(error_in("<emitter type='spot'>\n<texture name='texture' type='mesh_attribute'><string name='name' "
+                        "value='vertex_color'/></texture></emitter>"),
+               Catch::StartsWith(":3:1: property 'texture': a spot is no mesh"));
+    const std::vector<std::string> told = warnings_of(lit + material("vertex_color") + cube, {.lenient = true});
+    REQUIRE(told.size() == 1);
+    CHECK_THAT(told[0], Catch::EndsWith("; 0.5 stands in for it"));
+    // Values beyond what reflects are told.
+    const std::vector<std::string> bright =
+        warnings_of(lit + material("vertex_color", "<float name='scale' value='-2'/>") + ply);
+    REQUIRE(bright.size() == 1);
+    CHECK_THAT(bright[0], Catch::StartsWith(":3:1: the texture has values from -2 to -0"));
 }
 
 TEST_CASE_METHOD(MitsubaFixture, "textures of reflectance and opacity", "[mitsuba]") {
@@ -770,6 +884,19 @@ TEST_CASE_METHOD(MitsubaFixture, "textures of reflectance and opacity", "[mitsub
     CHECK(other.raw);
     CHECK(other.nearest);
     CHECK(other.wrap == WRAP_clamp);
+    const Mesh lamp =
+        shape("sphere", "<emitter type='area'><texture name='radiance' type='bitmap'>" + file + "</texture></emitter>");
+    CHECK(lamp.radiance == Color{1, 1, 1});
+    CHECK(std::get<BitmapTexture>(lamp.texture.value()).picture->width == 2);
+    const auto slides = [&](const std::string &axis) { // of 2 x 2 pixels, as one row is doubled
+        return light<emitter_projector>("projector", "<texture name='irradiance' type='bitmap'>" + file +
+                                                         "</texture><float name='fov' value='40'/>"
+                                                         "<string name='fov_axis' value='" +
+                                                         axis + "'/>");
+    };
+    CHECK(slides("y").aspect == 1);
+    CHECK(slides("y").fov == Approx(40));
+    CHECK(slides("diagonal").fov == Approx(28.8680).margin(1e-3));
     const Bsdf mask = textured_cube("mask", "<texture name='opacity' type='checkerboard'/><bsdf type='diffuse'/>");
     CHECK(mask.as<bsdf_mask_record>().opacity.value == 1.f);
     CHECK(mask.textures.size() == 1);
@@ -798,7 +925,7 @@ TEST_CASE_METHOD(MitsubaFixture, "textures of reflectance and opacity", "[mitsub
           ":3:40: property 'filter_type': unknown value 'ewa'; available: bilinear, nearest");
     CHECK_THAT(error("<string name='filename' value='b.png'/>"), Catch::StartsWith(":3:1: property 'filename': "));
     const std::string no_image = "<string name='filename' value='a.obj'/>";
-    CHECK_THAT(error(no_image), Catch::StartsWith(":3:1: property 'filename': ") && Catch::Contains("is no image"));
+    CHECK_THAT(error(no_image), Catch::StartsWith(":3:1: property 'filename': ") && Catch::Contains("not an image"));
     const std::vector<std::string> told =
         warnings_of("<emitter type='constant'/><shape type='cube'><bsdf type='diffuse'><texture name='reflectance' "
                     "type='bitmap'>" +

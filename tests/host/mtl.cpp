@@ -1,5 +1,7 @@
 #include "read/mtl.h"
 #include "base/log.h"
+#include "base/table.h"
+#include "image/image.h"
 #include "read/obj_materials.h"
 #include "support/error_of.h"
 #include "support/scratch.h"
@@ -200,7 +202,12 @@ TEST_CASE_METHOD(MtlFixture, "materials become the BSDFs that Opal has", "[mtl]"
     REQUIRE(lamp.radiance);
     CHECK(is_near(*lamp.radiance, {5, 2.5, 1.25}));
     CHECK(blender_surface("d 0\n").is_invisible);
-    CHECK(blender_surface("d 0.5\n").lacking.size() == 1);
+    const SurfaceOfMaterial half = blender_surface("Kd 0.25\nd 0.5\n");
+    REQUIRE(half.bsdf.is<bsdf_mask_record>());
+    CHECK(half.bsdf.as<bsdf_mask_record>().opacity.value == 0.5f);
+    CHECK(half.bsdf.children.at(0).children.at(0).as<bsdf_diffuse_record>().albedo.value[0] == 0.25f);
+    CHECK(half.lacking.empty());
+    CHECK(blender_surface("Kd 1\nPr 0\nTf 1 1 1\nd 0.5\n").lacking.size() == 1); // glass passes light by itself
     CHECK(blender_surface("map_Kd t.png\nmap_Bump n.png\n").lacking ==
           std::vector<std::string>{"map_Bump n.png", "map_Kd t.png"});
 }
@@ -361,4 +368,73 @@ TEST_CASE_METHOD(MtlFixture, "mutated libraries are read or refused", "[mtl]") {
                 surface_of(material);
         });
     }
+}
+
+TEST_CASE_METHOD(MtlFixture, "pictures of colours and of opacity are rendered", "[mtl]") {
+    Image image;
+    image.width = 2;
+    image.height = 1;
+    image.layers = {{"R", {0.5f, 1}}, {"G", {0.25f, 1}}, {"B", {0, 1}}};
+    std::filesystem::create_directories(scratch / "maps");
+    write_exr(image, scratch / "maps/my wood.exr");
+    // The first mesh of an OBJ file with a material of these statements.
+    const auto mesh_of = [&](const std::string &statements) {
+        scratch.write("a.mtl", "newmtl a\n" + statements);
+        const auto path = scratch.write("a.obj", triangles + "mtllib a.mtl\nusemtl a\nf 1 2 3\n");
+        return meshes_by_material(read_obj(path, {}), path, {}, {}).at(0);
+    };
+    const auto texture_of = [](const Bsdf &bsdf, const char *name) {
+        return std::get<BitmapTexture>(
+            bsdf.textures.at(find_row(bsdf_parameters(bsdf.kind()), "parameter", name).texture_word));
+    };
+    const Bsdf plain = mesh_of("map_Kd maps\\my wood.exr\n").bsdf.children.at(0);
+    CHECK(plain.as<bsdf_diffuse_record>().albedo.value[1] == 1);
+    CHECK(texture_of(plain, "albedo").picture->width == 2);
+    CHECK(texture_of(plain, "albedo").to_uv == UvTransform{{{1, 0, 0}, {0, -1, 1}}}); // v = 0 is the bottom row
+    CHECK(texture_of(plain, "albedo").wrap == WRAP_repeat);
+    CHECK_FALSE(texture_of(plain, "albedo").raw);
+    const Bsdf tiled =
+        mesh_of("Kd 0.25 0.5 1\nmap_Kd -s 2 4 1 -o 0.5 0.125 0 -clamp on maps/my wood.exr\n").bsdf.children.at(0);
+    CHECK(tiled.as<bsdf_diffuse_record>().albedo.value[0] == 0.25f); // which the picture multiplies
+    CHECK(texture_of(tiled, "albedo").to_uv == UvTransform{{{2, 0, 0.5}, {0, -4, 0.875}}});
+    CHECK(texture_of(tiled, "albedo").wrap == WRAP_clamp);
+    const Bsdf coated = mesh_of("map_Kd maps/my wood.exr\nPr 0.5\n").bsdf.children.at(0);
+    CHECK(texture_of(coated, "kd").picture->width == 2);
+    const Bsdf metal = mesh_of("map_Kd maps/my wood.exr\nPr 0.5\nPm 1\n").bsdf.children.at(0);
+    CHECK(texture_of(metal, "ks").picture->width == 2);
+    const Bsdf fence = mesh_of("map_d maps/my wood.exr\n").bsdf;
+    REQUIRE(fence.is<bsdf_mask_record>());
+    CHECK(fence.as<bsdf_mask_record>().opacity.value == 1);
+    CHECK(texture_of(fence, "opacity").raw); // numbers
+    CHECK(texture_of(fence, "opacity").to_uv[1][1] == -1);
+
+    const auto told_of = [&](const std::string &statements) { return warnings_of([&] { mesh_of(statements); }); };
+    CHECK(told_of("map_Kd maps/my wood.exr\nmap_d -t 0 0 0 -mm 0 1 maps/my wood.exr\n") == // its alpha is meant
+          std::vector<std::string>{file() + ":1:1: material 'a': Opal does not render map_d maps/my wood.exr"});
+    CHECK(told_of("Kd 0.5\nmap_Bump maps/my wood.exr\nnorm maps/my wood.exr\n") ==
+          std::vector<std::string>{
+              file() + ":1:1: material 'a': Opal does not render map_Bump maps/my wood.exr, norm maps/my wood.exr"});
+    CHECK(told_of("map_Kd -mm 0.5 1 maps/my wood.exr\n") ==
+          std::vector<std::string>{file() + ":2:1: option '-mm' of a texture is ignored"});
+}
+
+TEST_CASE_METHOD(MtlFixture, "a picture that is missing is told, with what stands in for it", "[mtl]") {
+    const auto path = scratch.write("a.obj", triangles + "mtllib a.mtl\nusemtl a\nf 1 2 3\n");
+    std::vector<Mesh> meshes;
+    const auto told_of = [&](const std::string &statements) {
+        scratch.write("a.mtl", "newmtl a\n" + statements);
+        return warnings_of([&] { meshes = meshes_by_material(read_obj(path, {}), path, {}, {}); });
+    };
+    const auto albedo = [&] { return meshes.at(0).bsdf.children.at(0).as<bsdf_diffuse_record>().albedo.value[0]; };
+    CHECK(told_of("map_Kd b.png\n") ==
+          std::vector<std::string>{file() + ":2:1: map_Kd: no such file: " + (scratch / "b.png").string() +
+                                   "; Kd 0.8 0.8 0.8 stands in for it"});
+    CHECK(albedo() == 0.8f);
+    CHECK_THAT(told_of("Kd 0.25\nmap_Kd a.obj\n").at(0),
+               Catch::StartsWith(file() + ":3:1: map_Kd: ") && Catch::EndsWith("; Kd 0.25 0.25 0.25 stands in for it"));
+    CHECK(albedo() == 0.25f);
+    CHECK_THAT(told_of("d 0.5\nmap_d b.png\n").at(0), Catch::EndsWith("; d 0.5 stands in for it"));
+    CHECK(meshes.at(0).bsdf.as<bsdf_mask_record>().opacity.value == 0.5f);
+    // a mesh with a bsdf of its own needs none
+    CHECK(warnings_of([&] { meshes_by_material(read_obj(path, {}), path, {}, {.own_bsdf = true}); }).empty());
 }

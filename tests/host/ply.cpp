@@ -553,6 +553,102 @@ TEST_CASE_METHOD(PlyFixture, "Nori's scenes may have meshes of PLY files", "[ply
     forget_warnings();
 }
 
+// Names and values as Mitsuba 3.9.1 has them: those of three vertices, or of the face.
+TEST_CASE_METHOD(PlyFixture, "attributes have the names that Mitsuba gives them", "[ply]") {
+    struct Row {
+        std::vector<std::string> properties; // of a vertex i the numbers 10 i + 0, 1, 2 ...
+        std::string name;
+        std::vector<float> values;
+    };
+    const std::vector<float> three = {0, 1, 2, 10, 11, 12, 20, 21, 22}, one = {0, 10, 20};
+    const std::vector<Row> rows = {
+        {{"red", "green", "blue"}, "vertex_color", three},
+        {{"r", "g", "b", "a"}, "vertex_color", three},
+        {{"blue", "green", "red"}, "vertex_color", {2, 1, 0, 12, 11, 10, 22, 21, 20}},
+        {{"red", "green", "blue", "foo_x", "foo_y", "foo_z"}, "vertex_foo", {3, 4, 5, 13, 14, 15, 23, 24, 25}},
+        {{"foo_x", "foo_y", "foo_z"}, "vertex_foo", three},
+        {{"foo_0", "foo_1", "foo_2"}, "vertex_foo", three},
+        {{"foo_1", "foo_2", "foo_3"}, "vertex_foo", three},
+        {{"color_0", "color_1", "color_2"}, "vertex_color", three},
+        {{"red"}, "vertex_color", {}},
+        {{"foo_bar_x", "foo_bar_y", "foo_bar_z"}, "vertex_foo_bar", three},
+        {{"foo_r", "foo_g", "foo_b"}, "vertex_foo_color", three},
+        {{"vertex_color_r", "vertex_color_g", "vertex_color_b"}, "vertex_vertex_color_color", three},
+        {{"foo_x"}, "vertex_foo", one},
+        {{"foo_r"}, "vertex_foo_color", one},
+        {{"foo_x", "bar_x"}, "vertex_bar", {1, 11, 21}},
+        {{"foo_x", "foo_y"}, "vertex_foo", {}},
+        {{"red", "green"}, "vertex_color", {}},
+        {{"quality"}, "vertex_quality", {}},
+        {{"foo_red", "foo_green", "foo_blue"}, "vertex_foo", {}},
+        {{"foo_r", "foo_g", "foo_b"}, "vertex_foo", {}},
+        {{"red", "green", "blue"}, "face_color", {}},
+    };
+    for (const Row &row : rows) {
+        INFO(row.name << " of " << fmt::format("{}", fmt::join(row.properties, " ")));
+        std::string declared, body;
+        for (const std::string &property : row.properties)
+            declared += "property float " + property + "\n";
+        const std::array<const char *, 3> places = {"0 0 0", "1 0 0", "0 1 0"};
+        for (size_t i = 0; i < 3; ++i) {
+            body += places[i];
+            for (size_t k = 0; k < row.properties.size(); ++k)
+                body += fmt::format(" {}", 10 * i + k);
+            body += "\n";
+        }
+        const auto file = scratch.write("a.ply", head + vertices(3, declared) + faces(1) + end + body + "3 0 1 2\n");
+        const TriangleMesh mesh = read_ply(file, {}, nullptr, std::vector<std::string>{row.name});
+        REQUIRE(mesh.attributes.size() == (row.values.empty() ? 0 : 1));
+        if (row.values.empty())
+            continue;
+        CHECK(mesh.attributes[0]->name == row.name);
+        CHECK_FALSE(mesh.attributes[0]->of_faces);
+        CHECK(std::ranges::equal(mesh.attributes[0]->values, row.values));
+    }
+    forget_warnings();
+}
+
+TEST_CASE_METHOD(PlyFixture, "attributes follow vertices and triangles that are renumbered, cut and dropped", "[ply]") {
+    // Vertex 0 is unused; the first face has no area, the last one has four corners.
+    const std::string text = head + vertices(6, "property double w_0\n") +
+                             "element face 3\nproperty float red\nproperty list uchar int vertex_indices\nproperty "
+                             "float green\nproperty float blue\n" +
+                             end + "9 9 9 0\n0 0 0 1\n1 0 0 2\n1 1 0 3\n0 1 0 4\n5 5 5 5\n" +
+                             "1 3 1 2 2 2 3\n4 3 4 2 1 5 6\n7 4 1 2 3 4 8 9\n";
+    const TriangleMesh mesh =
+        read_ply(scratch.write("a.ply", text), {}, nullptr, std::vector<std::string>{"face_color", "vertex_w"});
+    REQUIRE(mesh.attributes.size() == 2);
+    const MeshAttribute &w = *mesh.attributes[0], &color = *mesh.attributes[1];
+    REQUIRE(w.name == "vertex_w");
+    REQUIRE(mesh.positions.size() == 4);
+    REQUIRE(w.values.size() == 4);
+    for (size_t i = 0; i < 4; ++i) // w is 1 + x + 3 y - 2 x y there
+        CHECK(double(w.values[i]) ==
+              1 + mesh.positions[i].x + 3 * mesh.positions[i].y - 2 * mesh.positions[i].x * mesh.positions[i].y);
+    CHECK(color.of_faces);
+    CHECK(std::ranges::equal(color.values, std::vector<float>{4, 5, 6, 7, 8, 9, 7, 8, 9}));
+    forget_warnings();
+}
+
+TEST_CASE_METHOD(PlyFixture, "attributes of whole numbers stay, and what is not finite is 0; both are told", "[ply]") {
+    const auto read = [&](const std::string &type, const std::string &first) {
+        const std::string declared =
+            "property " + type + " red\nproperty " + type + " green\nproperty " + type + " blue\n";
+        return read_ply(scratch.write("a.ply", head + vertices(3, declared) + faces(1) + end + "0 0 0 " + first +
+                                                   " 128 0\n1 0 0 1 2 3\n0 1 0 4 5 6\n3 0 1 2\n"),
+                        {}, nullptr, std::vector<std::string>{"vertex_color"});
+    };
+    size_t before = warnings().size();
+    CHECK(read("uchar", "255").attributes.at(0)->values[0] == 255);
+    REQUIRE(warnings().size() == before + 1);
+    CHECK_THAT(warnings()[before], Catch::Contains("a.ply:7:") && Catch::Contains("vertex_color has whole numbers"));
+    before = warnings().size();
+    CHECK(read("float", "nan").attributes.at(0)->values[0] == 0);
+    REQUIRE(warnings().size() == before + 1);
+    CHECK_THAT(warnings()[before], Catch::Contains("1 numbers of the attribute vertex_color are NaN or infinite"));
+    forget_warnings();
+}
+
 // What Mitsuba 3.9.1 made of small files (corners of triangles in order; measured by loading them).
 TEST_CASE_METHOD(PlyFixture, "meshes get the normals and uv that Mitsuba gives them", "[ply]") {
     // What a mesh that is turned round keeps of the barycentric coordinates, where the file has none of its own.

@@ -41,6 +41,12 @@ TEST_CASE("entities are decoded without shifting the nodes after them", "[xml]")
     CHECK(document.root().children()[0].place().column == 26);
 }
 
+TEST_CASE("the five entities of XML and references to characters are decoded", "[xml]") {
+    const XmlDocument document("a.xml", "<scene a=\"&lt;&gt;&amp;&quot;&apos;\" b=\"&#65;&#x42;&#xe9;&#8364;\"/>");
+    CHECK(document.root().attribute("a") == "<>&\"'");
+    CHECK(document.root().attribute("b") == "AB\xc3\xa9\xe2\x82\xac");
+}
+
 TEST_CASE("malformed XML fails at its place", "[xml]") {
     CHECK_THAT(error_in("<scene>\n  <mesh>\n</scene>"), Catch::StartsWith("a.xml:3:3: not well-formed XML: "));
     CHECK_THAT(error_in("<scene>\n  <mesh type=obj/>\n</scene>"),

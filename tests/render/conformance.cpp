@@ -64,6 +64,7 @@ TEST_CASE("Wrong kernels are rejected", "[conformance][stat]") {
         {"emitters/mesh.cl", "    return color;", "    return v3_all((real)(NAN));", "furnace.xml", 1000},
         {"emitters/area_light.cl", "square(s->t) /", "s->t /", "furnace.xml", 100000}, // MIS mixes measures
         {"emitters/constant.cl", "color, 1 / square", "color, 2 / square", "sky.xml", 1000},
+        {"emitters/envmap.cl", "active ? sine / density", "active ? 1 / density", "environment_map.xml", 100000},
         {"emitters/dispatch.cl", "ray.d = v3_pick(light.infinite, light.d, d);", "", "spots_and_lenses.xml", 1000},
         {"emitters/spot.cl", "falloff * square(inverse_distance)", "falloff * inverse_distance", "spots_and_lenses.xml",
          1000},

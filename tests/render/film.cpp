@@ -20,8 +20,10 @@ namespace {
 
 // Kernels that make every sample of pixels 5, 16, 27, ... NaN, or infinite where `what` says so.
 Mutant spoiled(const std::string &what) {
-    return {"pixels " + what, "kernels/retire.cl", "sample[0] = r[lane];",
-            "sample[0] = place[lane] % 11u == 5u ? " + what + " : r[lane];"};
+    return {"pixels " + what, "kernels/retire.cl", "v3 light = path->radiance;",
+            "v3 light = path->radiance;\n"
+            "light.x = to_mask(film_pixel(scene->settings, path->sampler.pixel) % 11u == 5u) ? (real)(" +
+                what + ") : light.x;"};
 }
 
 } // namespace

@@ -18,7 +18,8 @@ TEST_CASE("The .deb, unpacked into an empty folder, holds all that belongs to it
                                      "dpkg-deb -x packed/*.deb tree && dpkg-deb -f packed/*.deb Depends Recommends");
     INFO(packed.out << packed.err);
     REQUIRE(packed.exit_code == 0);
-    for (const char *part : {"libopenexr", "libpng16", "libfmt", "libpugixml", "libxxhash", "pocl-opencl-icd"})
+    for (const char *part :
+         {"libopenexr", "libpng16", "libjpeg62-turbo", "libfmt", "libpugixml", "libxxhash", "pocl-opencl-icd"})
         CHECK_THAT(packed.out, Catch::Contains(part));
     for (const char *file :
          {"bin/opal", "share/doc/opal/LICENSE", "share/man/man1/opal.1", "share/opal/scenes/cbox_mis.xml",

@@ -9,6 +9,7 @@
 #include "support/rooms.h"
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <random>
 
@@ -305,6 +306,96 @@ Findings check_sphere_lights(const Sources &sources, unsigned seed) {
                 append(findings, light_findings(probe, sampled_lights(probe, from), what, effort));
             }
         }
+    return findings;
+}
+
+namespace {
+
+// A picture of smooth noise, which no symmetry of a surface maps to itself.
+Texture noise(unsigned seed) {
+    std::mt19937 random(seed);
+    const auto picture = std::make_shared<Picture>();
+    picture->width = 5;
+    picture->height = 4;
+    picture->channels = 3;
+    for (int i = 0; i < 5 * 4 * 3; i++)
+        picture->floats.push_back(float(0.25 + double(random() >> 8) * 0x1p-24));
+    return BitmapTexture{.picture = picture, .to_uv = {{{1.5, 0.25, 0.1}, {-0.25, 0.75, 0.3}}}};
+}
+
+// Lights in the unit square, and spheres beside it: of each kind one and one that is turned round.
+std::vector<Mesh> textured_lights() {
+    TriangleMesh two = examples::mesh_of({{0.3, 0, 0}, {0.6, 0, 0}, {0.6, 1, 0}, {0.3, 1, 0}}, {{0, 1, 2}, {0, 2, 3}});
+    two.uvs = {{0, 0}, {2, 0.5f}, {1, 3}, {-1, 1}};
+    two.uv_corners = {{0, 1, 2}, {0, 2, 3}};
+    const TriangleMesh plain = examples::mesh_of({{0.6, 0, 0}, {0.8, 0, 0}, {0.7, 1, 0}}, {{0, 1, 2}});
+    std::vector<Mesh> lights = {
+        light(Parallelogram{{0, 0, 0}, {0.1, 0, 0}, {0, 1, 0}}, {1, 2, 3}),
+        light(Parallelogram{{0.1, 0, 0}, {0.1, 0, 0}, {0, 1, 0}, true}, {3, 2, 1}),
+        light(two, {1, 1, 1}),
+        light(plain, {4, 4, 4}),
+        light(Sphere{{1.2, 0.2, 0}, 0.1}, {2, 1, 1}),
+        light(Sphere{{}, 0.1}.moved(Transform::translate({1.2, 0.8, 0}) * Transform::rotate({1, 2, 3}, 40)),
+              {5, 5, 2})};
+    unsigned seed = 1;
+    for (Mesh &mesh : lights)
+        mesh.texture = noise(seed++);
+    lights[3].texture.reset(); // a lane's neighbours may have none
+    return lights;
+}
+
+// A map of random colours over four decades, one texel of which is that much brighter.
+std::shared_ptr<const EnvironmentMap> random_map(int width, int height, float sun, unsigned seed) {
+    std::mt19937 random(seed);
+    Picture picture;
+    picture.width = width;
+    picture.height = height;
+    picture.channels = 3;
+    for (int i = 0; i < 3 * width * height; i++)
+        picture.floats.push_back(std::exp2(float(random() % 1000) / 75));
+    for (size_t channel = 0; channel < 3 && sun > 0; channel++)
+        picture.floats[3 * size_t(width * (height / 2) + width / 2) + channel] = sun;
+    return environment_of(std::move(picture), "random");
+}
+
+} // namespace
+
+Findings check_textured_lights(const Sources &sources, unsigned seed) {
+    Findings findings;
+    const auto check = [&](const std::string &what, const std::vector<Mesh> &meshes) {
+        for (int lanes : tested_lanes()) {
+            KernelProbe probe = probe_of(flatten(scene_of(meshes), lanes), lanes, sources);
+            findings.push_back(samples_agree(what + at_width(lanes), probe, seed++));
+        }
+    };
+    const std::vector<Mesh> lights = textured_lights();
+    for (size_t i = 0; i < lights.size(); i++)
+        check("textured light " + std::to_string(i), {lights[i]});
+    check("all textured lights", lights);
+    return findings;
+}
+
+Findings check_skies(const Sources &sources, unsigned seed) {
+    struct Sky {
+        const char *name;
+        int width, height;
+        float sun;
+        Transform to_world;
+    };
+    const Transform turned = Transform::rotate({1, 2, -1}, 77);
+    const std::vector<Sky> skies = {{"one texel", 1, 1, 0, {}},
+                                    {"one row", 5, 1, 0, turned},
+                                    {"two rows", 3, 2, 0, {}},
+                                    {"one column", 1, 6, 0, turned},
+                                    {"7 x 5 texels, mirrored", 7, 5, 0, turned * Transform::scale({-1, 1, 1})},
+                                    {"16 x 9 texels with a sun", 16, 9, 1e6f, turned}};
+    Findings findings;
+    for (const Sky &sky : skies) {
+        emitter_envmap light;
+        light.map = random_map(sky.width, sky.height, sky.sun, ++seed);
+        light.to_world = sky.to_world;
+        append(findings, check_light(sky.name, {light, {}}, sources, seed++));
+    }
     return findings;
 }
 

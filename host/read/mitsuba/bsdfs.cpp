@@ -1,6 +1,7 @@
 // Parsers of materials.
 #include "base/log.h"
 #include "read/mitsuba/parsers.h"
+#include "read/texture_values.h"
 #include "scene/index_of_refraction.h"
 
 #include <fmt/format.h>
@@ -38,6 +39,9 @@ void set_parameter(Importer &importer, Object &object, const std::string &proper
     } else if (const std::optional<Texture> texture = importer.texture(object, property)) {
         set(white); // which the texture multiplies
         bsdf.textures[parameter.texture_word] = *texture;
+        importer.context().pictures->when_loaded([place = object.place_of(property), &parameter, texture = *texture] {
+            warn_of_values(place, parameter, texture);
+        });
     }
 }
 

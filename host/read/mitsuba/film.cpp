@@ -56,6 +56,8 @@ const std::vector<Plugin<void (*)(Object &, Filter &)>> filter_types = {
     {"lanczos", "lanczos", parse_lanczos},
 };
 
+} // namespace
+
 void parse_filter(Importer &importer, Object &object, Filter &filter) {
     const auto *type = importer.row_of_type(object, filter_types, "a gaussian one stands in for it");
     if (!type)
@@ -67,6 +69,8 @@ void parse_filter(Importer &importer, Object &object, Filter &filter) {
         object.mistake(problem);
     object.finish();
 }
+
+namespace {
 
 // A property with a choice of names that say how Mitsuba writes the file. `own`: as Opal does it.
 void parse_format(Object &object, const char *name, const std::vector<std::string> &names, const std::string &own,

@@ -1,6 +1,5 @@
 #include "base/log.h"
 #include "read/mitsuba/parsers.h"
-#include "read/picture.h"
 
 #include <fmt/format.h>
 
@@ -54,6 +53,7 @@ void Importer::count_unknown(Object &object, const std::vector<std::string> &kno
 }
 
 void Importer::finish() {
+    context_.pictures->finish();
     for (const Unknown &unknown : unknown_) {
         const std::string times = unknown.count == 1 ? "" : fmt::format(" ({} in the scene)", unknown.count);
         const std::string message = unknown_name(unknown.tag + " type", unknown.type, unknown.known, times);
@@ -94,13 +94,6 @@ std::optional<Texture> Importer::texture(Object &object, const std::string &name
     return child && child->tag() == "texture" ? texture(*child) : std::nullopt;
 }
 
-std::shared_ptr<const Picture> Importer::picture(const std::filesystem::path &file) {
-    std::shared_ptr<const Picture> &picture = pictures_[file];
-    if (!picture)
-        picture = std::make_shared<const Picture>(read_picture(file, context_.hashes));
-    return picture;
-}
-
 Color Importer::color(Object &object, const std::string &name, SpectrumUse use, const Color &otherwise) {
     if (const std::optional<Color> color = object.color(name, use))
         return *color;
@@ -126,23 +119,11 @@ std::shared_ptr<Object> only_child(Object &object, const std::string &tag) {
     return children.front();
 }
 
-bool keeps_angles(const Transform &transform) {
-    const Vec3 x = column(transform, 0), y = column(transform, 1), z = column(transform, 2);
-    const double area = std::cbrt(transform.determinant() * transform.determinant()); // of a side, if all are alike
-    for (double square : {dot(x, x), dot(y, y), dot(z, z)})
-        if (!(std::abs(square - area) <= most_scale_error * area))
-            return false;
-    for (double product : {dot(x, y), dot(y, z), dot(z, x)})
-        if (!(std::abs(product) <= most_scale_error * area))
-            return false;
-    return area > 0;
-}
-
 bool keeps_lengths(const Transform &transform) {
     for (int i = 0; i < 3; i++)
         if (const Vec3 axis = column(transform, i); !(std::abs(dot(axis, axis) - 1) <= most_scale_error))
             return false;
-    return keeps_angles(transform);
+    return why_no_sphere(transform).empty();
 }
 
 } // namespace opal::mitsuba

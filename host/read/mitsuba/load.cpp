@@ -109,6 +109,20 @@ void choose_emitter_choice(SceneDescription &scene) {
         scene.strategy[AXIS_emitter_choice] = CHOICE_emitter_choice_uniform;
 }
 
+// Objects beside the sensors, to which these refer: those that nothing refers to are looked at, too.
+void check_unused(Importer &importer, Object &root) {
+    Sensor unused = default_sensor();
+    const auto check = [&](const char *tag, auto parse) {
+        for (const auto &object : root.children(tag))
+            if (!importer.has_met(*object))
+                importer.context().attempt(*object, [&] { parse(*object); });
+    };
+    check("film", [&](Object &film) { parse_film(importer, film, unused.camera); });
+    check("sampler", [&](Object &sampler) { parse_sampler(importer, sampler, unused); });
+    check("rfilter", [&](Object &filter) { parse_filter(importer, filter, unused.camera.filter); });
+    root.children("spectrum"); // which colours refer to
+}
+
 SceneDescription parse_scene(Importer &importer, Object &root, const LoadOptions &options) {
     const ParseContext &context = importer.context();
     SceneDescription scene;
@@ -123,13 +137,13 @@ SceneDescription parse_scene(Importer &importer, Object &root, const LoadOptions
     for (const auto &shape : root.children("shape"))
         parse_shape(importer, *shape, scene);
     for (const auto &emitter : root.children("emitter"))
-        context.attempt(*emitter, [&] { scene.lights.push_back(parse_scene_emitter(importer, *emitter)); });
+        if (!importer.is_area_light_of_shape(*emitter))
+            context.attempt(*emitter, [&] { scene.lights.push_back(parse_scene_emitter(importer, *emitter)); });
     choose_emitter_choice(scene);
     for (const char *tag : {"medium", "phase", "volume"})
         for (const auto &object : root.children(tag))
             importer.refuse(*object, "it is left out");
-    for (const char *tag : {"film", "sampler", "rfilter", "spectrum"}) // others refer to them
-        root.children(tag);
+    check_unused(importer, root);
     root.finish();
     importer.finish();
     return scene;

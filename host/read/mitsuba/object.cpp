@@ -196,12 +196,16 @@ std::shared_ptr<Object> Object::child_named(const std::string &name) {
     return nullptr;
 }
 
-std::optional<std::filesystem::path> Object::file(const std::string &name) {
+std::optional<std::filesystem::path> Object::file(const std::string &name, const std::string &instead) {
     const std::optional<std::string> value = string(name);
     if (!value)
         return std::nullopt;
     const std::optional<std::filesystem::path> found = find_file(*value, document_->folders());
-    check(found.has_value(), name, no_file_text(*value, document_->folders()));
+    const std::string message = found ? "" : no_file_text(*value, document_->folders());
+    if (!found && context().lenient)
+        warn(fmt::format("{}: property '{}': {}; {}", place_of(name).text(), name, message, instead));
+    else
+        check(found.has_value(), name, message);
     return found;
 }
 

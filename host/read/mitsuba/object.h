@@ -53,8 +53,9 @@ public:
     std::shared_ptr<Object> child_named(const std::string &name);
 
     // The file that a property of type string names: looked for in the folders of <path>, then in that of the main
-    // file, then in the working folder. A mistake at the property, and then nothing, if there is none.
-    std::optional<std::filesystem::path> file(const std::string &name);
+    // file, then in the working folder. Nothing if there is none: a mistake at the property, or if lenient a warning
+    // that says what is done `instead`.
+    std::optional<std::filesystem::path> file(const std::string &name, const std::string &instead = "it is left out");
 
     void ignore(const std::string &name); // accepts it, whatever its type
     // A mistake at the place of the property or named child, or of the object if it is not given, unless `good`.

@@ -4,7 +4,6 @@
 
 #include "read/mitsuba/object.h"
 
-#include <map>
 #include <set>
 #include <unordered_map>
 
@@ -47,12 +46,19 @@ public:
     // The <texture> that a property is, if it is one and can be read; read once likewise.
     std::optional<Texture> texture(Object &object, const std::string &name);
     const std::optional<Texture> &texture(Object &object);
-    std::shared_ptr<const Picture> picture(const std::filesystem::path &file); // read once
 
     // The colour of a property where Opal has no textures: one is a mistake, or if lenient its mean.
     Color color(Object &object, const std::string &name, SpectrumUse use, const Color &otherwise);
 
-    void finish(); // one mistake for each plug-in that Opal does not have; if lenient, a warning
+    // Area lights that shapes refer to may stand in the scene.
+    void add_area_light(const Object &emitter) { area_lights_.insert(&emitter); }
+    bool is_area_light_of_shape(const Object &emitter) const { return area_lights_.contains(&emitter); }
+
+    bool has_met(const Object &object) const { return counted_.contains(&object); } // was its plug-in looked at?
+
+    // Waits for the pictures. One mistake for each picture that is damaged, and one for each plug-in that Opal does not
+    // have; if lenient, warnings.
+    void finish();
     std::vector<PluginUse> uses() const { return uses_; }
     const ParseContext &context() const { return context_; }
 
@@ -69,25 +75,18 @@ private:
     void count_unknown(Object &object, const std::vector<std::string> &known, const std::string &instead);
 
     ParseContext context_;
-    std::set<const Object *> counted_;
+    std::set<const Object *> counted_, area_lights_;
     std::vector<PluginUse> uses_;
     std::vector<Unknown> unknown_;
     std::unordered_map<const Object *, Bsdf> bsdfs_;
     std::unordered_map<const Object *, std::optional<Texture>> textures_;
-    std::map<std::filesystem::path, std::shared_ptr<const Picture>> pictures_;
 };
 
 // At most one child of that tag; a second one is a mistake.
 std::shared_ptr<Object> only_child(Object &object, const std::string &tag);
 
-// Whether the columns are perpendicular and of one length, so that angles stay: a rotation, a scale, a mirroring. To
-// the share that files with few digits reach.
-bool keeps_angles(const Transform &transform);
-
-// Whether lengths stay, too.
+// Whether lengths and angles stay: a rotation, a mirroring. To the share that files with few digits reach.
 bool keeps_lengths(const Transform &transform);
-
-constexpr double most_scale_error = 1e-3; // of a squared length: as Mitsuba's cameras have it
 
 std::optional<Texture> parse_texture(Importer &importer, Object &object); // nothing if there is a mistake in it
 void parse_bsdf(Importer &importer, Object &object, Bsdf &bsdf);
@@ -110,7 +109,11 @@ struct Sensor {
 Sensor parse_sensor(Importer &importer, Object &object);
 Sensor default_sensor(); // what Mitsuba's perspective camera is without any property
 
+// The angle across the width of an image, in degrees, of a camera or a projector; width, height: of the image.
+double parse_fov(Object &object, double width, double height);
+
 void parse_film(Importer &importer, Object &object, Camera &camera);
+void parse_filter(Importer &importer, Object &object, Filter &filter);
 void set_default_film(Camera &camera); // 768 x 576 pixels, a Gaussian filter
 
 // The sampler's choice, and the samples a pixel.

@@ -51,26 +51,9 @@ double parse_focal_length(Object &object, std::string text) {
 }
 
 // That of a lens before small-format film, whose diagonal stands for that of the image.
-double fov_of_focal_length(double millimetres, const Camera &camera) {
+double fov_of_focal_length(double millimetres, double width, double height) {
     const double half = std::hypot(film_width_35mm, film_height_35mm) / 2;
-    return angle_across_width(2 * std::atan(half / millimetres) / degree, camera.width,
-                              std::hypot(camera.width, camera.height));
-}
-
-// The angle across the width of the film, which must be read.
-double parse_fov(Object &object, const Camera &camera) {
-    const std::optional<double> fov = object.number("fov");
-    const std::optional<std::string> focal_length = object.string("focal_length");
-    if (fov && focal_length)
-        object.mistake_at("focal_length", "stands beside fov, which says it, too: give one of both");
-    if (fov) {
-        object.check(*fov > 0 && *fov < 180, "fov", "must be above 0 and below 180 degrees");
-        const std::string axis = object.string("fov_axis").value_or("x");
-        return angle_across_width(*fov, camera.width, line_of_axis(object, axis, camera.width, camera.height));
-    }
-    object.check(!object.has("fov_axis"), "fov_axis", "means nothing without fov");
-    object.ignore("fov_axis");
-    return fov_of_focal_length(focal_length ? parse_focal_length(object, *focal_length) : initial_focal_length, camera);
+    return angle_across_width(2 * std::atan(half / millimetres) / degree, width, std::hypot(width, height));
 }
 
 void require_rigid(Object &object, const Camera &camera) {
@@ -80,7 +63,7 @@ void require_rigid(Object &object, const Camera &camera) {
 void parse_perspective(Object &object, Camera &camera) {
     require_rigid(object, camera);
     camera.kind = CAMERA_perspective;
-    camera.perspective.fov = parse_fov(object, camera);
+    camera.perspective.fov = parse_fov(object, camera.width, camera.height);
     // The film is moved there, and the axis here.
     camera.perspective.principal_point_x = 0 - object.number("principal_point_offset_x").value_or(0);
     camera.perspective.principal_point_y = 0 - object.number("principal_point_offset_y").value_or(0);
@@ -89,7 +72,7 @@ void parse_perspective(Object &object, Camera &camera) {
 void parse_thinlens(Object &object, Camera &camera) {
     require_rigid(object, camera);
     camera.kind = CAMERA_thinlens;
-    camera.thinlens.fov = parse_fov(object, camera);
+    camera.thinlens.fov = parse_fov(object, camera.width, camera.height);
     const auto radius = object.number("aperture_radius");
     if (!object.has("aperture_radius"))
         object.mistake("the camera lacks its aperture_radius: <float name=\"aperture_radius\" value=\"0.1\"/>");
@@ -119,12 +102,29 @@ void set_default_clip(Camera &camera) {
 
 } // namespace
 
+double parse_fov(Object &object, double width, double height) {
+    const std::optional<double> fov = object.number("fov");
+    const std::optional<std::string> focal_length = object.string("focal_length");
+    if (fov && focal_length)
+        object.mistake_at("focal_length", "stands beside fov, which says it, too: give one of both");
+    if (fov) {
+        object.check(*fov > 0 && *fov < 180, "fov", "must be above 0 and below 180 degrees");
+        const std::string axis = object.string("fov_axis").value_or("x");
+        return angle_across_width(*fov, width, line_of_axis(object, axis, width, height));
+    }
+    object.check(!object.has("fov_axis"), "fov_axis", "means nothing without fov");
+    object.ignore("fov_axis");
+    return fov_of_focal_length(focal_length ? parse_focal_length(object, *focal_length) : initial_focal_length, width,
+                               height);
+}
+
 Sensor default_sensor() {
     Sensor sensor;
     set_default_clip(sensor.camera);
     set_default_film(sensor.camera);
     set_default_sampler(sensor);
-    sensor.camera.perspective.fov = fov_of_focal_length(initial_focal_length, sensor.camera);
+    sensor.camera.perspective.fov =
+        fov_of_focal_length(initial_focal_length, sensor.camera.width, sensor.camera.height);
     return sensor;
 }
 

@@ -1,6 +1,5 @@
 // Parsers of textures.
 #include "read/mitsuba/parsers.h"
-#include "read/picture.h"
 
 #include <fmt/format.h>
 
@@ -38,25 +37,40 @@ Texture parse_bitmap(Importer &importer, Object &object) {
     texture.nearest = parse_choice(object, "filter_type", {"bilinear", "nearest"}) == 1;
     texture.wrap = parse_choice(object, "wrap_mode", {"repeat", "mirror", "clamp"}); // in the order of WRAP_*
     texture.to_uv = parse_to_uv(object);
-    for (const char *name : {"format", "accel"}) // how texels are stored
-        object.ignore(name);
-    const auto file = object.file("filename");
+    // How texels are held: Opal keeps 8 bits and 32 as they are, and 16 as half floats, as Mitsuba's auto does.
+    const std::vector<std::string> formats = {"auto", "variant", "float16", "fp16", "uint8"};
+    texture.full_precision = formats[parse_choice(object, "format", formats)] == "variant";
+    object.boolean("accel");
+    const auto file = object.file("filename", "0.5 stands in for the texture");
     if (!object.has("filename"))
         object.mistake("the texture lacks its filename: <string name=\"filename\" value=\"a.png\"/>");
     if (!file)
         throw NoObject{};
+    const auto lacks = [&importer, &object](const std::string &message) {
+        importer.lacks(object, "filename", message, "0.5 stands in for the texture");
+    };
     try {
-        texture.picture = importer.picture(*file);
+        texture.picture = importer.context().pictures->load(*file, importer.context().hashes, lacks);
     } catch (const Error &error) {
-        importer.lacks(object, "filename", error.what(), "0.5 stands in for the texture");
+        lacks(error.what());
         throw NoObject{};
     }
+    return texture;
+}
+
+Texture parse_mesh_attribute(Importer &, Object &object) {
+    MeshAttributeTexture texture;
+    texture.name = object.string("name").value_or("");
+    object.check(texture.name.starts_with("vertex_") || texture.name.starts_with("face_"), "name",
+                 "the texture needs the name of an attribute, which begins with vertex_ or face_");
+    texture.scale = object.number("scale").value_or(1);
     return texture;
 }
 
 const std::vector<Plugin<Texture (*)(Importer &, Object &)>> texture_types = {
     {"checkerboard", "checkerboard", parse_checkerboard},
     {"bitmap", "bitmap", parse_bitmap},
+    {"mesh_attribute", "mesh_attribute", parse_mesh_attribute},
 };
 
 } // namespace

@@ -42,6 +42,8 @@ void read_parameter(Properties &properties, const Parameter &parameter, std::spa
     case ParameterType::BSDF:
     case ParameterType::POINT:
     case ParameterType::VECTOR:
+    case ParameterType::IMAGE:
+    case ParameterType::TRANSFORM:
         break;
     case ParameterType::COLOR:
         if (const auto color = properties.color(parameter.xml_name))
@@ -93,6 +95,9 @@ Bsdf parse_bsdf(const XmlNode &node, const ParseContext &context) {
         read_parameter(properties, parameter, bsdf.words);
     add_children(properties, *type, bsdf);
     bsdf.check_count();
+    for (const XmlNode &texture : properties.children("texture"))
+        context.attempt(texture, [&] { apply_texture(texture, context, node, bsdf); });
+    apply_picture(properties, bsdf);
     properties.ignore("use_cosine"); // exporters write it for every material
     properties.finish();
     return bsdf;

@@ -1,5 +1,6 @@
 // Parsers of emitters. Area lights are children of a mesh, others of the scene: their parameters are those of
 // cl/emitters/list.h, by their names in the XML.
+#include "read/environment.h"
 #include "read/nori/parsers.h"
 
 #include <fmt/format.h>
@@ -17,12 +18,12 @@ struct EmitterType {
     std::optional<EmitterParameters> parameters; // with all defaults; nothing: a child of a mesh
 };
 
-const char *const pointlight = "pointlight", *const distantdisk = "distantdisk";
+const char *const pointlight = "pointlight", *const distantdisk = "distantdisk", *const ibl = "IBL";
 constexpr double pi = std::numbers::pi;
 constexpr double full_sphere = 4 * pi; // solid angle of all directions
 
 // parallelogram_emitter: the 2022 course's name for the area light of a parallelogram. pointlight: Zaragoza's course,
-// which has defaults. spotlight, distantdisk: public forks of Nori.
+// which has defaults. spotlight, distantdisk, env, environment, env_map, IBL: public forks of Nori.
 #define OPAL_EMITTER_TYPE(name, traits) {#name, emitter_##name{}},
 const std::vector<EmitterType> emitter_types = {
     {"area", {}},
@@ -30,7 +31,11 @@ const std::vector<EmitterType> emitter_types = {
     OPAL_SCENE_EMITTERS(OPAL_EMITTER_TYPE){
         pointlight, emitter_point{.position = {0, 100, 0}, .power = {full_sphere, full_sphere, full_sphere}}},
     {"spotlight", emitter_spot{}},
-    {distantdisk, emitter_constant{}}};
+    {distantdisk, emitter_constant{}},
+    {"env", emitter_envmap{}},
+    {"environment", emitter_envmap{}},
+    {"env_map", emitter_envmap{}},
+    {ibl, emitter_envmap{}}};
 
 // The type of an emitter in a <parent>. Throws NoObject if there is none, or if it stands in the wrong place.
 const EmitterType &type_in(Properties &properties, const char *parent) {
@@ -80,6 +85,17 @@ void read_names_of_forks(Properties &properties, const std::string &type, emitte
 }
 
 void read_names_of_forks(Properties &, const std::string &, emitter_directional &) {}
+void read_names_of_forks(Properties &, const std::string &, emitter_projector &) {}
+
+// IBL stands upright by default: its z points to the scene's y.
+void read_names_of_forks(Properties &, const std::string &type, emitter_envmap &light) {
+    if (type == ibl)
+        light.to_world.rows = {{{0, -1, 0, 0}, {0, 0, 1, 0}, {-1, 0, 0, 0}, {0, 0, 0, 1}}};
+}
+
+// Forks look a direction up by Nori's sphericalCoordinates: rows by the angle from z, columns from x towards y. In the
+// frame of an EnvironmentMap these are y, -z and x.
+const Transform frame_of_forks{{{{0, 0, -1, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}}}};
 
 // The angle in degrees of a number that is a cosine in some forks and an angle in degrees in others.
 double angle_of(Properties &properties, const std::optional<double> &given, const char *name) {
@@ -117,6 +133,8 @@ bool is_unset(const Color &color) { return std::isnan(color[0]); }
 bool is_unset(Vec3 v) { return std::isnan(v.x); }
 bool is_unset(double number) { return std::isnan(number); }
 bool is_unset(bool) { return false; }
+bool is_unset(const Transform &) { return false; }
+bool is_unset(const std::shared_ptr<const EnvironmentMap> &map) { return !map; }
 
 std::optional<Color> value_of(Properties &properties, const Parameter &parameter, const Color &) {
     return properties.color(parameter.xml_name);
@@ -131,6 +149,24 @@ std::optional<Vec3> value_of(Properties &properties, const Parameter &parameter,
     return parameter.type == ParameterType::POINT ? properties.point(parameter.xml_name)
                                                   : properties.vector(parameter.xml_name);
 }
+std::optional<Transform> value_of(Properties &properties, const Parameter &parameter, const Transform &) {
+    return properties.transform(parameter.xml_name);
+}
+std::optional<std::shared_ptr<const EnvironmentMap>> value_of(Properties &properties, const Parameter &parameter,
+                                                              const std::shared_ptr<const EnvironmentMap> &) {
+    const ParseContext &context = properties.context();
+    const auto name = properties.string(parameter.xml_name);
+    if (!name && context.example_map && !properties.has(parameter.xml_name))
+        return context.example_map;
+    if (!name)
+        return std::nullopt;
+    const std::filesystem::path file = find_file(properties, parameter.xml_name, *name, "the emitter is left out");
+    try {
+        return read_environment(file, context.hashes);
+    } catch (const Error &error) {
+        properties.fail_at(parameter.xml_name, error.what());
+    }
+}
 
 void check_value(const Properties &properties, const Parameter &parameter, const Color &color) {
     for (double channel : color)
@@ -140,6 +176,10 @@ void check_value(const Properties &properties, const Parameter &parameter, doubl
     check_range(properties, parameter, value);
 }
 void check_value(const Properties &, const Parameter &, bool) {}
+void check_value(const Properties &, const Parameter &, const std::shared_ptr<const EnvironmentMap> &) {}
+void check_value(const Properties &properties, const Parameter &parameter, const Transform &value) {
+    warn_of_scale(value, properties.place_of(parameter.xml_name));
+}
 void check_value(const Properties &properties, const Parameter &parameter, Vec3 value) {
     properties.check(parameter.type == ParameterType::POINT || length(value) > 0, parameter.xml_name,
                      fmt::format("must not be 0: {}", parameter.meaning));
@@ -178,6 +218,11 @@ Light parse_scene_emitter(const XmlNode &node, const ParseContext &context) {
         });
     });
     properties.finish();
+    if (auto *map = std::get_if<emitter_envmap>(&light.parameters)) {
+        if (!map->map)
+            throw NoObject{};
+        map->to_world = map->to_world * frame_of_forks;
+    }
     return light;
 }
 

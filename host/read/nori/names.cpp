@@ -13,8 +13,8 @@ struct OtherName {
     std::string other, known;
 };
 
-// luminaire: Nori of 2012. shape: some forks.
-const std::vector<OtherName> other_tags = {{"luminaire", "emitter"}, {"shape", "mesh"}};
+// luminaire: Nori of 2012. shape, diffusemap: some forks.
+const std::vector<OtherName> other_tags = {{"luminaire", "emitter"}, {"shape", "mesh"}, {"diffusemap", "texture"}};
 
 struct OtherProperty {
     std::string tag, type; // of the object; no type: all
@@ -22,7 +22,8 @@ struct OtherProperty {
 };
 
 // reflectance: Nori of 2012. Others: public forks, whose focalLength is the depth of the plane that is seen sharply,
-// and whose directional light has the irradiance as `power` or `radiance`.
+// whose directional light has the irradiance as `power` or `radiance`, and whose environments have many names for a
+// file.
 const std::vector<OtherProperty> other_properties = {
     {"bsdf", "", "reflectance", "albedo"},
     {"camera", "", "radius", "lensRadius"},
@@ -32,6 +33,11 @@ const std::vector<OtherProperty> other_properties = {
     {"camera", "", "focalLength", "focalDistance"},
     {"emitter", "directional", "power", "irradiance"},
     {"emitter", "directional", "radiance", "irradiance"},
+    {"emitter", "", "exr_path", "filename"},
+    {"emitter", "", "envMapPath", "filename"},
+    {"emitter", "", "mapname", "filename"},
+    {"emitter", "", "OpenEXR", "filename"},
+    {"emitter", "", "strength", "scale"},
 };
 
 // What public forks register. Zaragoza's course has ETH's names direct_* with upstream's camera; its pointlight, which

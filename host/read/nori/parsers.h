@@ -11,6 +11,17 @@ ParseContext context_for(const std::filesystem::path &file, const LoadOptions &o
 
 Bsdf parse_bsdf(const XmlNode &node, const ParseContext &context);
 
+// Sets the parameter that a <texture> names by its attribute `name`, or without one the first colour. material: the
+// object that the bsdf was made of
+void apply_texture(const XmlNode &node, const ParseContext &context, const XmlNode &material, Bsdf &bsdf);
+// Sets the first colour of a bsdf, if it has one, to the picture that a property of type string names.
+void apply_picture(Properties &properties, Bsdf &bsdf);
+
+// The file that a property names: beside the XML file, else in the current folder. Backslashes separate folders, too.
+// A missing one is a mistake; if lenient, a warning that says what is done `instead`. Then throws NoObject.
+std::filesystem::path find_file(const Properties &properties, const std::string &property, std::string name,
+                                const std::string &instead);
+
 void parse_area_emitter(const XmlNode &node, const ParseContext &context, Mesh &mesh); // a child of the mesh
 Light parse_scene_emitter(const XmlNode &node, const ParseContext &context);           // a child of the scene
 

@@ -16,7 +16,7 @@ namespace opal {
 namespace {
 
 const std::vector<std::string> object_tags = {"scene",      "mesh",    "bsdf",    "emitter", "camera",
-                                              "integrator", "sampler", "rfilter", "test"};
+                                              "integrator", "sampler", "rfilter", "test",    "texture"};
 const std::vector<std::string> property_tags = {"boolean", "integer", "float", "string",
                                                 "point",   "vector",  "color", "transform"};
 
@@ -32,6 +32,14 @@ template <class Value> bool is_all(const Value &value, double x) {
     return number && *number == x;
 }
 
+// Points and vectors of a texture's plane have two numbers in some files.
+Vec3 pair_or_triple(const std::string &text) {
+    if (split(text).size() != 2)
+        return parse_triple(text);
+    const std::vector<double> pair = parse_numbers(text, 2);
+    return {pair[0], pair[1], 0};
+}
+
 Color to_color(Vec3 v) { return {v.x, v.y, v.z}; }
 
 } // namespace
@@ -39,7 +47,9 @@ Color to_color(Vec3 v) { return {v.x, v.y, v.z}; }
 Properties::Properties(const XmlNode &object, const ParseContext &context, bool has_type)
     : object_(object), context_(context), known_tag_(known_tag(object.tag())),
       mistakes_before_(context.mistakes ? context.mistakes->count() : 0) {
-    if (has_type)
+    if (known_tag_ == "texture") // its name is that of a parameter
+        context.require_attributes(object, {"type"}, {"name"});
+    else if (has_type)
         context.require_attributes(object, {"type"});
     else
         context.require_attributes(object, {});
@@ -71,6 +81,7 @@ Properties::Value Properties::parse_value(const XmlNode &node) const {
         {"string", [](const std::string &text) { return text; }},
         {"point", [](const std::string &text) { return parse_triple(text); }},
         {"vector", [](const std::string &text) { return parse_triple(text); }},
+        {"pair", [](const std::string &text) { return pair_or_triple(text); }},
         {"color", [](const std::string &text) { return to_color(parse_triple(text)); }},
     };
     if (node.tag() == "transform") {
@@ -82,7 +93,8 @@ Properties::Value Properties::parse_value(const XmlNode &node) const {
     node.require_empty();
     return at_place(node, [&] {
         try {
-            return parsers.at(node.tag())(node.attribute("value"));
+            const bool is_of_plane = known_tag_ == "texture" && (node.tag() == "point" || node.tag() == "vector");
+            return parsers.at(is_of_plane ? "pair" : node.tag())(node.attribute("value"));
         } catch (const Error &error) {
             throw Error("property '" + node.attribute("name") + "': " + error.what());
         }
@@ -136,13 +148,24 @@ void Properties::lacks_property(const std::string &name) {
 }
 
 std::optional<bool> Properties::boolean_if(const std::string &name) {
-    const Property *property = look(name);
-    return property && property->node.tag() != "boolean" ? std::nullopt : boolean(name);
+    return has_other_type("boolean", name) ? std::nullopt : boolean(name);
 }
 
 std::optional<std::string> Properties::string_if(const std::string &name) {
+    return has_other_type("string", name) ? std::nullopt : string(name);
+}
+
+std::optional<double> Properties::number_if(const std::string &name) {
+    return has_other_type("float", name) ? std::nullopt : number(name);
+}
+
+std::optional<Vec3> Properties::point_if(const std::string &name) {
+    return has_other_type("point", name) ? std::nullopt : point(name);
+}
+
+bool Properties::has_other_type(const char *tag, const std::string &name) const {
     const Property *property = look(name);
-    return property && property->node.tag() != "string" ? std::nullopt : string(name);
+    return property && property->node.tag() != tag;
 }
 
 std::optional<std::string> Properties::text(const std::string &tag, const std::string &name) {

@@ -56,6 +56,8 @@ public:
     // text() gets the value then.
     std::optional<bool> boolean_if(const std::string &name);
     std::optional<std::string> string_if(const std::string &name); // likewise, for numbers that may have a name
+    std::optional<double> number_if(const std::string &name);      // likewise, for numbers that may be two
+    std::optional<Vec3> point_if(const std::string &name);         // likewise, for points that may be vectors
     // The value as written, of a property of that type; nothing if it is missing or was fetched by boolean_if.
     std::optional<std::string> text(const std::string &tag, const std::string &name);
 
@@ -103,6 +105,7 @@ private:
     void tell_unfetched(const Property &property) const;
     [[noreturn]] void lacks_property(const std::string &name);
     Property *ask(const std::string &name);
+    bool has_other_type(const char *tag, const std::string &name) const;
     const Property *look(const std::string &name) const;
     void wrong_type(Property &property, const std::string &tag) const;
 

@@ -5,22 +5,13 @@
 #include "read/obj_materials.h"
 #include "read/ply.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace opal {
 
 namespace {
-
-// Finds a file beside the XML file, else in the current folder. Backslashes separate folders, too.
-std::filesystem::path find_file(Properties &properties, std::string name) {
-    std::replace(name.begin(), name.end(), '\\', '/');
-    std::filesystem::path beside = properties.context().folder / name;
-    std::error_code ignored;
-    for (const std::filesystem::path &candidate : {beside, std::filesystem::path(name)})
-        if (std::filesystem::exists(candidate, ignored))
-            return candidate;
-    properties.fail_at("filename", "no such file: " + beside.string() + ", nor " + name + " in the current folder");
-}
 
 // What a mesh has but for its shape.
 struct MeshStart {
@@ -36,7 +27,7 @@ std::vector<Mesh> parse_file(Properties &properties, MeshStart &start, const std
     std::string name = properties.required(filename, "filename");
     if (start.mesh.name.empty())
         start.mesh.name = name;
-    const std::filesystem::path file = find_file(properties, name);
+    const std::filesystem::path file = find_file(properties, "filename", name, "the mesh is left out");
     try {
         return read(file);
     } catch (const Error &error) {
@@ -54,7 +45,8 @@ std::vector<Mesh> parse_obj(Properties &properties, MeshStart start) {
     return parse_file(properties, start, filename, [&](const std::filesystem::path &file) -> std::vector<Mesh> {
         ObjFile obj = read_obj(file, start.to_world, hashes);
         if (with_materials)
-            return meshes_by_material(std::move(obj), file, start.mesh, start.own, hashes);
+            return meshes_by_material(std::move(obj), file, start.mesh, start.own, hashes,
+                                      properties.context().pictures);
         if (!start.own.own_bsdf)
             warn_of_unused_materials(obj, file);
         start.mesh.shape = std::move(obj.mesh);
@@ -110,6 +102,21 @@ const std::vector<ShapeType> shape_types = {
 
 } // namespace
 
+std::filesystem::path find_file(const Properties &properties, const std::string &property, std::string name,
+                                const std::string &instead) {
+    std::replace(name.begin(), name.end(), '\\', '/');
+    const std::filesystem::path beside = properties.context().folder / name;
+    std::error_code ignored;
+    for (const std::filesystem::path &candidate : {beside, std::filesystem::path(name)})
+        if (std::filesystem::exists(candidate, ignored))
+            return candidate;
+    const std::string message = fmt::format("no such file: {}, nor {} in the current folder", beside.string(), name);
+    if (!properties.context().lenient)
+        properties.fail_at(property, message);
+    warn(fmt::format("{}: property '{}': {}; {}", properties.place_of(property).text(), property, message, instead));
+    throw NoObject{};
+}
+
 std::vector<Mesh> parse_meshes(const XmlNode &node, const ParseContext &context) {
     Properties properties(node, context);
     const ShapeType *type = properties.row_of_type(shape_types, "the shape is left out");
@@ -120,8 +127,14 @@ std::vector<Mesh> parse_meshes(const XmlNode &node, const ParseContext &context)
     mesh.place = node.place();
     mesh.name = properties.string("name").value_or("");
     const Transform to_world = start.to_world = properties.transform("toWorld").value_or(Transform());
-    if (auto bsdf = properties.child("bsdf")) {
+    const auto bsdf = properties.child("bsdf");
+    if (bsdf) {
         context.attempt(*bsdf, [&] { mesh.bsdf = parse_bsdf(*bsdf, context); });
+        start.own.own_bsdf = true;
+    }
+    for (const XmlNode &texture : properties.children("texture")) {
+        context.attempt(texture, [&] { apply_texture(texture, context, bsdf.value_or(texture), mesh.bsdf); });
+        mesh.bsdf.place = bsdf.value_or(texture).place();
         start.own.own_bsdf = true;
     }
     if (auto emitter = properties.child("emitter")) {
