@@ -1,7 +1,7 @@
 // blendbsdf: two BSDFs, the second one with the share `weight`, clamped to [0, 1], and the first one with the rest.
 //   <bsdf type="blendbsdf"> <float name="weight" value="0.3"/> <bsdf type="diffuse"/> <bsdf type="mirror"/> </bsdf>
-// eval and pdf are the sums of both, each times its share. bsdf_respond draws one of the BSDFs by their shares. They may
-// lead to others, blends too.
+// eval and pdf are the sums of both, each times its share. bsdf_respond draws one of the BSDFs by their shares. They
+// may lead to others, blends too.
 #include "bsdfs/interface.cl"
 #include "core/lanes.cl"
 #include "core/math.cl"
@@ -13,7 +13,7 @@ static BsdfOpening blendbsdf_open(const Scene *scene, const Surface *s, blendbsd
     real middle = o.leaf.low + (o.leaf.high - o.leaf.low) * (1 - weight);
     uints bit = (uints)(0x80000000u) >> o.leaf.blends;
     mask by_number = o.leaf.number < middle, by_place = to_mask((o.leaf.place & bit) == 0u);
-    mask first = (o.leaf.drawn & by_number) | (!o.leaf.drawn & by_place);
+    mask first = (o.leaf.drawn & by_number) | (by_place & !o.leaf.drawn);
     o.at = uints_pick(first, b.first, b.second);
     o.leaf.share = o.leaf.share * (first ? 1 - weight : weight);
     o.leaf.low = first ? o.leaf.low : middle;

@@ -27,5 +27,6 @@ static BsdfOpening bumpmap_open(const Scene *scene, const Surface *s, bumpmap_bs
     // Where the tangents span no plane, as at the poles of spheres, the surface keeps its own normal.
     v3 n = v3_pick(length2 > SHORTEST_NORMAL * SHORTEST_NORMAL, v3_scale(across, sign * rsqrt(length2)),
                    v3_of((real)(0), (real)(0), (real)(1)));
+    o.at = b.base;
     return perturb(s, n, b.flip_invalid_normals, b.use_shadowing_function, o);
 }

@@ -145,6 +145,7 @@ static BsdfResponse opened_respond(const Scene *scene, const Surface *s, v3 wo, 
     if (OPAL_HAS_bsdf_mask) r = masked(s, r, numbers.met, sampled);
     if (OPAL_PERTURBATIONS > 0) {
         real lit = perturbation_factor(s, wo), sent = perturbation_factor(s, r.sample.wo);
+        sent = r.sample.passes ? (real)(1) : sent; // no surface is met
         r.f = v3_scale(r.f, lit);
         r.pdf = lit > 0 ? r.pdf : (real)(0);
         r.sample.weight = v3_scale(r.sample.weight, sent);

@@ -76,10 +76,10 @@ static BsdfOpening bsdf_opening_pick(mask m, BsdfOpening yes, BsdfOpening no) {
                       v3_pick(m, yes.frame.n, no.frame.n)},
                      m ? yes.opacity : no.opacity,
                      blend_leaf_pick(m, yes.leaf, no.leaf),
-                     (m & yes.mirrored) | (!m & no.mirrored)};
+                     (m & yes.mirrored) | (no.mirrored & !m)};
     for (int i = 0; i < PERTURBATION_PLACES; i++) {
         o.perturbations[i].normal = v3_pick(m, yes.perturbations[i].normal, no.perturbations[i].normal);
-        o.perturbations[i].shadows = (m & yes.perturbations[i].shadows) | (!m & no.perturbations[i].shadows);
+        o.perturbations[i].shadows = (m & yes.perturbations[i].shadows) | (no.perturbations[i].shadows & !m);
     }
     return o;
 }

@@ -11,7 +11,7 @@ static BsdfOpening twosided_open(const Scene *scene, const Surface *s, twosided_
     o.at = uints_pick(behind, b.back, b.base);
     o.wi.z = fabs(o.wi.z);
     o.frame.n = v3_pick(behind, v3_neg(o.frame.n), o.frame.n);
-    o.mirrored = (o.mirrored & !behind) | (!o.mirrored & behind);
+    o.mirrored = (o.mirrored & !behind) | (behind & !o.mirrored);
     for (int i = 0; i < OPAL_PERTURBATIONS; i++) { // on the viewer's side still
         o.perturbations[i].normal.x = behind ? -o.perturbations[i].normal.x : o.perturbations[i].normal.x;
         o.perturbations[i].normal.y = behind ? -o.perturbations[i].normal.y : o.perturbations[i].normal.y;

@@ -25,7 +25,7 @@ static LightSample emitter_projector_sample(const Scene *scene, uints id, v3 col
     color = textured_light(scene, id, EMITTER_projector, color, texture_point_at(uv));
     real falloff = lit ? 1 / (cosine * cosine * cosine) : (real)(0);
     return light_sample_of(d, distance2 * inverse_distance, v3_scale(color, falloff * square(inverse_distance)),
-                           (real)(1), p, inverse_distance < FAR & lit);
+                           (real)(1), p, (inverse_distance < FAR) & lit);
 }
 
 static v3 emitter_projector_radiance(const Scene *scene, uints id, v3 color, v3 d, const Surface *s) {

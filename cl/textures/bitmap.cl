@@ -127,8 +127,8 @@ static v3 texture_bitmap_color(const Scene *scene, uints at, TexturePoint point,
     return mixed(top, bottom, y.share);
 }
 
-// The derivatives over u and v of the luminance, which is bilinear between texels: they jump from cell to cell. They are
-// 0 of the nearest texel.
+// The derivatives over u and v of the luminance, which is bilinear between texels: they jump from cell to cell. They
+// are 0 of the nearest texel.
 static v2 texture_bitmap_gradient(const Scene *scene, uints at, TexturePoint point, mask active) {
     Bitmap b = bitmap_at(scene, at, active);
     v2 uv = point.uv;

@@ -21,6 +21,7 @@ Findings check_watertight(const Sources &sources, unsigned seed); // rays at edg
 
 Findings check_warps(const Sources &sources, unsigned seed);         // warp_findings of selftest's warps and two more
 Findings check_bsdfs(const Sources &sources, unsigned seed);         // check_materials of tests/cases/bsdfs
+Findings check_nested_bsdfs(const Sources &sources, unsigned);       // blends and changed normals against Mitsuba's
 Findings check_facets(const Sources &sources, unsigned seed);        // densities of normals against integrals
 Findings check_albedos(const Sources &sources, unsigned seed);       // microfacet against quadrature
 Findings check_refraction(const Sources &sources, unsigned seed);    // Snell's law and Fresnel's formulas in double
@@ -32,8 +33,8 @@ Findings check_delta_lights(const Sources &sources, unsigned);       // spots an
 Findings check_sphere_lights(const Sources &sources, unsigned seed); // from near, far and inside
 // Samples of lights with textures against rays, alone and together.
 Findings check_textured_lights(const Sources &sources, unsigned seed);
-Findings check_environments(const Sources &sources, unsigned);       // radiance and density against Mitsuba's
-Findings check_skies(const Sources &sources, unsigned seed);         // environments that are hard to sample
+Findings check_environments(const Sources &sources, unsigned); // radiance and density against Mitsuba's
+Findings check_skies(const Sources &sources, unsigned seed);   // environments that are hard to sample
 
 // material_findings of these materials.
 Findings check_materials(const std::vector<Material> &materials, const Sources &sources, unsigned seed);
