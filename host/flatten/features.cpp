@@ -15,6 +15,13 @@ struct Decision {
     std::string reason;
 };
 
+// The parameter of that name, or null.
+const Parameter *parameter_of(uint kind, const char *name) {
+    const auto parameters = bsdf_parameters(kind);
+    const auto found = std::ranges::find(parameters, name, &Parameter::name);
+    return found == parameters.end() ? nullptr : &*found;
+}
+
 std::string plural(std::size_t count, const char *one, const char *many) {
     return fmt::format("{} {}", count, count == 1 ? one : many);
 }
@@ -71,6 +78,33 @@ public:
         return bsdfs([&](uint at) {
             return scene.bsdfs[at] == BSDF_microfacet &&
                    record_of<bsdf_microfacet_record>(scene.bsdfs, at).alpha.value < MICROFACET_MIRROR_ALPHA;
+        });
+    }
+
+    Decision beckmann() const { return with_flag("ggx", 0); }
+    Decision ggx() const { return with_flag("ggx", 1); }
+    Decision all_facets() const { return with_flag("sample_visible", 0); }
+
+    Decision tinted_glass() const {
+        return bsdfs([&](uint at) {
+            const uint kind = scene.bsdfs[at];
+            if (!parameter_of(kind, "specular_transmittance"))
+                return false;
+            const auto is_tinted = [&](const char *name) {
+                const Parameter &parameter = *parameter_of(kind, name);
+                const auto is_one = [&](uint word) { return std::bit_cast<float>(word) == 1; };
+                return !std::all_of(&scene.bsdfs[at + parameter.word], &scene.bsdfs[at + parameter.word] + 3, is_one) ||
+                       scene.bsdfs[at + parameter.texture_word] != OPAL_UNTEXTURED;
+            };
+            return is_tinted("specular_reflectance") || is_tinted("specular_transmittance");
+        });
+    }
+
+    // Meshes with a BSDF of facets whose flag is that.
+    Decision with_flag(const char *name, uint value) const {
+        return bsdfs([&](uint at) {
+            const Parameter *parameter = parameter_of(scene.bsdfs[at], name);
+            return parameter && scene.bsdfs[at + parameter->word] == value;
         });
     }
 
@@ -249,8 +283,23 @@ bool general_has(unsigned feature, int lanes) {
 
 // Features whose scenes have a general kernel of their own, which does not ask at run time.
 bool has_general_kernel(unsigned feature) {
-    return feature == FEATURE_endless_paths || feature == FEATURE_hidden_emitters || feature == FEATURE_uv ||
-           feature == FEATURE_light_textures;
+    switch (feature) {
+    case FEATURE_bsdf_conductor:
+    case FEATURE_bsdf_roughconductor:
+    case FEATURE_bsdf_thindielectric:
+    case FEATURE_bsdf_roughdielectric:
+    case FEATURE_beckmann:
+    case FEATURE_ggx:
+    case FEATURE_all_facets:
+    case FEATURE_tinted_glass:
+    case FEATURE_endless_paths:
+    case FEATURE_hidden_emitters:
+    case FEATURE_uv:
+    case FEATURE_light_textures:
+        return true;
+    default:
+        return false;
+    }
 }
 
 // Features of a second program for all scenes, which serves scenes that have one of these. Scenes of Nori's own kinds
