@@ -4,6 +4,7 @@
 #include "scene.cl"
 #include "shared/parameters.h"
 #include "textures/dispatch.cl"
+#include "textures/interface.cl"
 
 // The parameters of the records that begin at word `at` of the table in which `parameter` lies in the first record.
 static v3 color_parameter(global const ColorParameter *parameter, uints at) {
@@ -18,13 +19,15 @@ static mask flag_parameter(global const uint *parameter, uints at) {
 }
 static uints bsdf_parameter(global const uint *parameter, uints at) { return GATHER_WORD(uints, parameter, at); }
 
-// The same times what the records' textures say at uv.
-static v3 textured_color(const Scene *scene, global const ColorParameter *parameter, uints at, v2 uv, mask active) {
-    v3 factor = texture_color(scene, GATHER_WORD(uints, &parameter->texture, at), uv, active);
+// The same times what the records' textures say at `point`.
+static v3 textured_color(const Scene *scene, global const ColorParameter *parameter, uints at, TexturePoint point,
+                         mask active) {
+    v3 factor = texture_color(scene, GATHER_WORD(uints, &parameter->texture, at), point, active);
     return v3_mul(color_parameter(parameter, at), factor);
 }
-static real textured_number(const Scene *scene, global const NumberParameter *parameter, uints at, v2 uv, mask active) {
-    v3 factor = texture_color(scene, GATHER_WORD(uints, &parameter->texture, at), uv, active);
+static real textured_number(const Scene *scene, global const NumberParameter *parameter, uints at, TexturePoint point,
+                            mask active) {
+    v3 factor = texture_color(scene, GATHER_WORD(uints, &parameter->texture, at), point, active);
     return number_parameter(parameter, at) * luminance(factor);
 }
 
@@ -42,10 +45,10 @@ static real textured_number(const Scene *scene, global const NumberParameter *pa
 // has the bits of the parameters that have a texture in the kernel's scene.
 #define READ_PARAMETER(type, name, xml, initial, range, meaning) READ_##type(name)
 #define READ_COLOR(name) \
-    if (textured >> PLACE_##name & 1) lanes.name = textured_color(scene, &record->name, at, uv, active); \
+    if (textured >> PLACE_##name & 1) lanes.name = textured_color(scene, &record->name, at, point, active); \
     else lanes.name = color_parameter(&record->name, at);
 #define READ_NUMBER(name) \
-    if (textured >> PLACE_##name & 1) lanes.name = textured_number(scene, &record->name, at, uv, active); \
+    if (textured >> PLACE_##name & 1) lanes.name = textured_number(scene, &record->name, at, point, active); \
     else lanes.name = number_parameter(&record->name, at);
 #define READ_FLAG(name) lanes.name = flag_parameter(&record->name, at);
 #define READ_BSDF(name) lanes.name = bsdf_parameter(&record->name, at);

@@ -7,7 +7,8 @@
 typedef struct {
     v3 p;                // position
     real t, u, v;        // its distance along the ray, and its coordinates (Hit)
-    v2 uv;               // texture coordinates, where the kernel has textures
+    v2 uv;               // texture coordinates, where the kernel has the feature uv
+    v3 dpdu, dpdv;       // derivatives of p over uv, flattened units; unset unless the kernel has the feature tangents
     v3 normal;           // geometric, unit, on the outer side: of triangles that of (p1-p0) x (p2-p0)
     Frame frame;         // around the shading normal
     v3 wi;               // towards the ray's origin, unit, in that frame
@@ -22,7 +23,8 @@ static Surface surface_pick(mask m, Surface yes, Surface no) {
     Frame frame = {v3_pick(m, yes.frame.s, no.frame.s), v3_pick(m, yes.frame.t, no.frame.t),
                    v3_pick(m, yes.frame.n, no.frame.n)};
     Surface s = {v3_pick(m, yes.p, no.p), m ? yes.t : no.t, m ? yes.u : no.u, m ? yes.v : no.v,
-                 v2_of(m ? yes.uv.x : no.uv.x, m ? yes.uv.y : no.uv.y), v3_pick(m, yes.normal, no.normal), frame,
+                 v2_of(m ? yes.uv.x : no.uv.x, m ? yes.uv.y : no.uv.y), v3_pick(m, yes.dpdu, no.dpdu),
+                 v3_pick(m, yes.dpdv, no.dpdv), v3_pick(m, yes.normal, no.normal), frame,
                  v3_pick(m, yes.wi, no.wi),
                  uints_pick(m, yes.primitive, no.primitive), m ? yes.ray_offset : no.ray_offset,
                  uints_pick(m, yes.bsdf, no.bsdf), uints_pick(m, yes.emitter, no.emitter), (real)(1)};
@@ -33,9 +35,22 @@ static Surface surface_pick(mask m, Surface yes, Surface no) {
 static Surface no_surface(void) {
     v3 zero = v3_all((real)(0));
     Frame frame = {zero, zero, zero};
-    Surface s = {zero, (real)(0), (real)(0), (real)(0), v2_of((real)(0), (real)(0)), zero, frame, zero, (uints)(0),
-                 (real)(0), (uints)(0), (uints)(OPAL_NONE), (real)(1)};
+    Surface s = {zero, (real)(0), (real)(0), (real)(0), v2_of((real)(0), (real)(0)), zero, zero, zero, frame, zero,
+                 (uints)(0), (real)(0), (uints)(0), (uints)(OPAL_NONE), (real)(1)};
     return s;
+}
+
+// The frame around the unit vector n whose s is the tangent dpdu of a Surface made orthogonal to n, as Mitsuba has it;
+// t = n x s. Where dpdu is 0, as at the poles of spheres, or all but along n, s is some vector across n.
+#define TANGENT_LEAST R(1e-3) // the sine of the angle between n and dpdu: below, rounding tilts s by 1e-4
+static Frame tangent_frame(v3 n, v3 dpdu) {
+    v3 along = v3_scale(dpdu, 1 / v3_largest(v3_abs(dpdu))); // its square would overflow
+    v3 s = v3_mad(n, -v3_dot(n, along), along);
+    real length2 = v3_dot(s, s);
+    mask valid = length2 > TANGENT_LEAST * TANGENT_LEAST;
+    s = v3_pick(valid, v3_scale(s, rsqrt(length2)), frame_with_jump(n, (real)(0)).s);
+    Frame frame = {s, v3_cross(n, s), n};
+    return frame;
 }
 
 // Sets what follows from the shading normal and the mesh: frame, wi, BSDF and emitter. ray.d is unit but for rounding,

@@ -7,6 +7,7 @@
 #include "core/rng.cl"
 #include "scene.cl"
 #include "surface.cl"
+#include "textures/interface.cl"
 
 #define COUNT_BSDF(name, traits) +OPAL_HAS_bsdf_##name
 #define COUNT_TRANSMITTING(name, traits) +(OPAL_HAS_bsdf_##name && ((traits) & OPAL_TRANSMITS) != 0)
@@ -49,7 +50,7 @@ static void bsdf_open(const Scene *scene, Surface *s, mask active) {
 #define OPEN(name, traits) \
         if (OPAL_HAS_bsdf_##name) { \
             mask m = active & to_mask(kind == BSDF_##name); \
-            if (ANY(m)) o = bsdf_opening_pick(m, name##_open(name##_at(scene, o.at, s->uv, m), o), o); \
+            if (ANY(m)) o = bsdf_opening_pick(m, name##_open(name##_at(scene, o.at, texture_point_of(s), m), o), o); \
             opened = opened | m; \
         }
         OPAL_NESTING_BSDFS(OPEN)
@@ -102,7 +103,7 @@ static BsdfResponse bsdf_respond(const Scene *scene, const Surface *s, v3 wo, ma
         mask same = bsdf_lanes(kind, BSDF_##name); \
         mask m_evaluated = evaluated & same, m_sampled = sampled & same; \
         if (ANY(m_evaluated | m_sampled)) { \
-            name##_bsdf b = name##_at(scene, s->bsdf, s->uv, m_evaluated | m_sampled); \
+            name##_bsdf b = name##_at(scene, s->bsdf, texture_point_of(s), m_evaluated | m_sampled); \
             if (!IS_DISCRETE(traits)) { \
                 r.f = v3_pick(m_evaluated, name##_eval(b, s->wi, wo), r.f); \
                 r.pdf = m_evaluated ? name##_pdf(b, s->wi, wo) : r.pdf; \

@@ -15,15 +15,16 @@
 #include "core/math.cl"
 #include "parameters.cl"
 #include "scene.cl"
+#include "textures/interface.cl"
 
-// NAME_bsdf, and NAME_at: the parameters at `uv` of the BSDFs whose records begin at word `at`. Lanes that are not
+// NAME_bsdf, and NAME_at: the parameters at `point` of the BSDFs whose records begin at word `at`. Lanes that are not
 // active may have records of other kinds: the host pads the table, so that no read passes its end.
 #define BSDF_READER(name, traits) \
     typedef struct { \
         uints at; \
         OPAL_BSDF_##name(LANES_MEMBER) \
     } name##_bsdf; \
-    static name##_bsdf name##_at(const Scene *scene, uints at, v2 uv, mask active) { \
+    static name##_bsdf name##_at(const Scene *scene, uints at, TexturePoint point, mask active) { \
         enum { OPAL_BSDF_##name(PARAMETER_PLACE) textured = OPAL_TEXTURED_bsdf_##name }; \
         global const bsdf_##name##_record *record = (global const bsdf_##name##_record *)scene->bsdfs; \
         name##_bsdf lanes; \

@@ -19,10 +19,11 @@
 
 // Traits of a kind, as bits.
 enum {
-    OPAL_SMOOTH = 1,      // some of its light has a density, so that light sampling serves it
-    OPAL_DISCRETE = 2,    // some of its light leaves in single directions
-    OPAL_TRANSMITS = 4,   // light passes through the surface
-    OPAL_HOLDS_OPAQUE = 8 // of a BSDF that leads to others: these must not have the trait OPAL_TRANSMITS
+    OPAL_SMOOTH = 1,       // some of its light has a density, so that light sampling serves it
+    OPAL_DISCRETE = 2,     // some of its light leaves in single directions
+    OPAL_TRANSMITS = 4,    // light passes through the surface
+    OPAL_HOLDS_OPAQUE = 8, // of a BSDF that leads to others: these must not have the trait OPAL_TRANSMITS
+    OPAL_TANGENTS = 16     // asks for dpdu and dpdv of Surface: the kernel gets the feature `tangents`
 };
 
 // BSDF(name, traits)

@@ -49,12 +49,13 @@ static v2 cos_sin_2pi(real u) {
 #define FRAME_JUMP R(-0.3719)
 typedef struct { v3 s, t, n; } Frame;
 
-static Frame frame_of(v3 n) {
-    real sign = n.z < FRAME_JUMP ? (real)(-1) : (real)(1);
+static Frame frame_with_jump(v3 n, real jump) {
+    real sign = n.z < jump ? (real)(-1) : (real)(1);
     real a = -1 / (sign + n.z), b = n.x * n.y * a;
     Frame f = {v3_of(1 + sign * n.x * n.x * a, sign * b, -sign * n.x), v3_of(b, sign + n.y * n.y * a, -n.y), n};
     return f;
 }
+static Frame frame_of(v3 n) { return frame_with_jump(n, (real)(FRAME_JUMP)); }
 static v3 to_local(Frame f, v3 v) { return v3_of(v3_dot(v, f.s), v3_dot(v, f.t), v3_dot(v, f.n)); }
 static v3 to_world(Frame f, v3 v) { return v3_mad(f.s, v.x, v3_mad(f.t, v.y, v3_scale(f.n, v.z))); }
 

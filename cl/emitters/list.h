@@ -76,6 +76,7 @@ typedef struct {
     float u[3], v[3];     // the edges from there
     float normal[3];      // u x v, unit; it emits on that side
     float area;
+    uint uv_exchanged;    // 1: texture coordinate u grows along the edge v, and v along u
 } emitter_parallelogram_record;
 
 typedef struct {
@@ -92,6 +93,7 @@ typedef struct {
     float center[3];
     float radius;
     uint inward;          // 1: it emits inside
+    uint sphere;          // its index among the spheres
 } emitter_sphere_record;
 
 typedef struct {
@@ -110,7 +112,7 @@ typedef struct {
 } emitter_directional_record;
 
 // One emitter. Lanes read the record of a kind from emitters of another kind too, and drop what they read: a member
-// that is an index into a table must stand before `u`. The members of `u` have a prefix, as "constant" is a keyword.
+// that is an index into a table must stand before `u`, or be used in the kind's own lanes alone. The members of `u` have a prefix, as "constant" is a keyword.
 #define OPAL_EMITTER_MEMBER(name, traits) emitter_##name##_record of_##name;
 typedef struct {
     uint kind;            // EMITTER_*
@@ -118,7 +120,7 @@ typedef struct {
     float accept;         // alias table: keep this row if a uniform number is below, else take row `other`
     uint other;
     uint two_sided;       // of a mesh: 1, it emits on both sides
-    uint texture;         // of a spot: first word of what multiplies its colour, or OPAL_UNTEXTURED. Others: the latter
+    uint texture;         // first word of what multiplies its colour, or OPAL_UNTEXTURED
     uint first, count;    // its rows of a table; of a mesh, of the light triangles. Others: 0, 0
     union {
         float color[3];   // with which every record begins

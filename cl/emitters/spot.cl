@@ -11,6 +11,7 @@
 #include "scene.cl"
 #include "surface.cl"
 #include "textures/dispatch.cl"
+#include "textures/interface.cl"
 
 // The angle between two unit vectors. The arc cosine would lose half of the digits near 0 and pi.
 static real angle_between(v3 a, v3 b) {
@@ -27,7 +28,7 @@ static v3 spot_texture(const Scene *scene, uints id, v3 d, v3 axis, mask active)
     v3 across_y = GATHER_V3(scene->emitters, id, .u.of_spot.across[1]);
     real depth = v3_dot(d, axis);
     v2 uv = v2_of(R(0.5) + v3_dot(d, across_x) / depth, R(0.5) + v3_dot(d, across_y) / depth);
-    return texture_color(scene, GATHER(uints, scene->emitters, id, .texture), uv, active);
+    return texture_color(scene, GATHER(uints, scene->emitters, id, .texture), texture_point_at(uv), active);
 }
 
 static LightSample emitter_spot_sample(const Scene *scene, uints id, v3 color, ReferencePoint from, v2 u, u2 bits) {

@@ -37,7 +37,9 @@
     OPAL_FEATURE_ROW(shading_normals, "shading_normals") \
     /* textures: surfaces have texture coordinates */ \
     OPAL_FEATURE_ROW(uv, "uv") \
-    /* a spot has a texture */ \
+    /* some BSDF asks for the derivatives of a surface's points over its texture coordinates */ \
+    OPAL_FEATURE_ROW(tangents, "tangents") \
+    /* a light has a texture */ \
     OPAL_FEATURE_ROW(light_textures, "light_textures") \
     /* rays of the camera pass emitters */ \
     OPAL_FEATURE_ROW(hidden_emitters, "hidden_emitters") \

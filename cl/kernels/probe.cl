@@ -185,4 +185,9 @@ kernel void trace(SCENE_PARAMETERS, global const float *rays, global float *out,
     put_v3(out, HIT_P_X, stride, base, s.p);
     put_v3(out, HIT_NORMAL_X, stride, base, s.normal);
     put(out, HIT_RAY_OFFSET, stride, base, s.ray_offset);
+    put(out, HIT_UV_U, stride, base, s.uv.x);
+    put(out, HIT_UV_V, stride, base, s.uv.y);
+    v3 none = v3_all((real)(0));
+    put_v3(out, HIT_DPDU_X, stride, base, OPAL_HAS_tangents ? s.dpdu : none);
+    put_v3(out, HIT_DPDV_X, stride, base, OPAL_HAS_tangents ? s.dpdv : none);
 }

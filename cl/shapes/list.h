@@ -16,7 +16,8 @@ enum { OPAL_SHAPES(OPAL_SHAPE_ENUM) SHAPE_COUNT };
     TABLE(TriangleBlock, triangle_blocks, "triangle blocks") \
     TABLE(Triangle, triangles, "triangles") \
     TABLE(TriangleUv, triangle_uvs, "uv of triangles") \
-    TABLE(SphereBlock, sphere_blocks, "sphere blocks")
+    TABLE(SphereBlock, sphere_blocks, "sphere blocks") \
+    TABLE(SphereFrame, sphere_frames, "frames of spheres")
 
 #ifdef __cplusplus
 namespace opal {
@@ -37,7 +38,7 @@ typedef struct {
 } Triangle;
 OPAL_SIZE_CHECK(Triangle, 16);
 
-// The texture coordinates of a triangle's corners, in scenes that have textures.
+// The texture coordinates of a triangle's corners, in scenes that need them.
 typedef struct {
     float corner[3][2];
 } TriangleUv;
@@ -52,6 +53,13 @@ typedef struct {
     uint id[OPAL_WIDTH];     // SHAPE_sphere << OPAL_SHAPE_SHIFT | index
 } SphereBlock;
 OPAL_SIZE_CHECK(SphereBlock, 224);
+
+// A sphere's own axes as unit vectors of the scene, by its index, in scenes that need texture coordinates. They may be
+// left-handed.
+typedef struct {
+    float axis[3][3];
+} SphereFrame;
+OPAL_SIZE_CHECK(SphereFrame, 36);
 
 #ifdef __cplusplus
 static_assert(SHAPE_COUNT <= OPAL_SHAPE_BITS); // one is left, so that no leaf is OPAL_NONE

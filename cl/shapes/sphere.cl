@@ -58,6 +58,41 @@ static real sphere_offset_of(v3 center, real radius) {
     return EPSILON * (SPHERE_OFFSET_POSITION * largest + SPHERE_OFFSET_RADIUS * radius);
 }
 
+// A point of spheres in texture coordinates, from its unit vector `outward` from the centre. In the sphere's own frame
+// u is the angle around z from x over 2 pi, in [0, 1), and v the angle from z over pi. `sphere`: its index
+typedef struct {
+    v3 own;          // outward, in the sphere's own frame
+    v3 axis[3];      // that frame
+    real across;     // the distance from its z axis
+} SpherePoint;
+
+static SpherePoint sphere_point(const Scene *scene, uints sphere, v3 outward) {
+    SpherePoint point;
+    point.axis[0] = GATHER_V3(scene->sphere_frames, sphere, .axis[0]);
+    point.axis[1] = GATHER_V3(scene->sphere_frames, sphere, .axis[1]);
+    point.axis[2] = GATHER_V3(scene->sphere_frames, sphere, .axis[2]);
+    point.own = v3_of(v3_dot(point.axis[0], outward), v3_dot(point.axis[1], outward), v3_dot(point.axis[2], outward));
+    point.across = sqrt(sin2_theta(point.own));
+    return point;
+}
+
+static v2 sphere_uv(SpherePoint point) {
+    // acos(z) would lose half of the digits near the poles.
+    real u = atan2(point.own.y, point.own.x) * INV_TWO_PI, v = atan2(point.across, point.own.z) * INV_PI;
+    return v2_of(u < 0 ? real_min(u + 1, (real)(1 - EPSILON)) : u, v);
+}
+
+// Sets dpdu and dpdv. At a pole dpdu is 0, and dpdv is along x, as Mitsuba has it.
+static void set_sphere_tangents(SpherePoint point, real radius, Surface *s) {
+    mask pole = !(point.across > 0);
+    real inverse = pole ? (real)(0) : 1 / point.across;
+    real cosine = pole ? (real)(1) : point.own.x * inverse * point.own.z, sine = point.own.y * inverse * point.own.z;
+    v3 dpdu = v3_mad(point.axis[1], point.own.x, v3_scale(point.axis[0], -point.own.y));
+    v3 dpdv = v3_mad(point.axis[0], cosine, v3_mad(point.axis[1], sine, v3_scale(point.axis[2], -point.across)));
+    s->dpdu = v3_scale(dpdu, 2 * PI * radius);
+    s->dpdv = v3_scale(dpdv, PI * radius);
+}
+
 static Surface surface_of_sphere(const Scene *scene, Ray ray, Hit hit, mask active) {
     uints word = WORD_OF_PLACE(SphereBlock, uints_pick(active, hit.place, (uints)(0)));
     // Pointers to words: beyond the first block they lie past the row, where no array may be indexed.
@@ -87,7 +122,12 @@ static Surface surface_of_sphere(const Scene *scene, Ray ray, Hit hit, mask acti
     s.t = hit.t;
     s.u = hit.u;
     s.v = hit.v;
-    s.uv = v2_of((real)(0), (real)(0)); // no texture is on a sphere yet
+    s.uv = v2_of((real)(0), (real)(0));
+    if (OPAL_HAS_uv) {
+        SpherePoint point = sphere_point(scene, s.primitive & (uint)(OPAL_BLOCK_BITS), outward);
+        s.uv = sphere_uv(point);
+        if (OPAL_HAS_tangents) set_sphere_tangents(point, radius, &s);
+    }
     s.p = v3_mad(outward, radius, center);
     finish_surface(scene, ray, s.normal, mesh, &s);
     return s;

@@ -59,17 +59,36 @@ static v3 shading_normal(const Scene *scene, CornerNormals corners, real u, real
     return v3_pick(corners.smooth & (length2 > 0), v3_scale(n, rsqrt(length2)), geometric);
 }
 
-// The texture coordinates of triangles at barycentric weights u, v.
-static v2 triangle_uv(const Scene *scene, uints triangle, real u, real v) {
-    if (!OPAL_HAS_uv) return v2_of((real)(0), (real)(0));
-    real w = 1 - u - v;
-    real x = w * GATHER(real, scene->triangle_uvs, triangle, .corner[0][0]) +
-             u * GATHER(real, scene->triangle_uvs, triangle, .corner[1][0]) +
-             v * GATHER(real, scene->triangle_uvs, triangle, .corner[2][0]);
-    real y = w * GATHER(real, scene->triangle_uvs, triangle, .corner[0][1]) +
-             u * GATHER(real, scene->triangle_uvs, triangle, .corner[1][1]) +
-             v * GATHER(real, scene->triangle_uvs, triangle, .corner[2][1]);
-    return v2_of(x, y);
+// The texture coordinates of triangles' corners.
+typedef struct { real u[3], v[3]; } CornerUvs;
+
+static CornerUvs corner_uvs(const Scene *scene, uints triangle) {
+    CornerUvs c = {{GATHER(real, scene->triangle_uvs, triangle, .corner[0][0]),
+                    GATHER(real, scene->triangle_uvs, triangle, .corner[1][0]),
+                    GATHER(real, scene->triangle_uvs, triangle, .corner[2][0])},
+                   {GATHER(real, scene->triangle_uvs, triangle, .corner[0][1]),
+                    GATHER(real, scene->triangle_uvs, triangle, .corner[1][1]),
+                    GATHER(real, scene->triangle_uvs, triangle, .corner[2][1])}};
+    return c;
+}
+
+// Those at barycentric weights b1, b2.
+static v2 triangle_uv(CornerUvs c, real b1, real b2) {
+    real b0 = 1 - b1 - b2;
+    return v2_of(b0 * c.u[0] + b1 * c.u[1] + b2 * c.u[2], b0 * c.v[0] + b1 * c.v[1] + b2 * c.v[2]);
+}
+
+// Sets dpdu and dpdv of triangles with edges e1, e2. Where the texture coordinates span no area they are two unit
+// vectors across the normal, those of Mitsuba.
+static void set_triangle_tangents(CornerUvs c, v3 e1, v3 e2, Surface *s) {
+    real du1 = c.u[1] - c.u[0], dv1 = c.v[1] - c.v[0], du2 = c.u[2] - c.u[0], dv2 = c.v[2] - c.v[0];
+    real inverse = 1 / (du1 * dv2 - dv1 * du2);
+    v3 dpdu = v3_scale(v3_mad(e1, dv2, v3_scale(e2, -dv1)), inverse);
+    v3 dpdv = v3_scale(v3_mad(e2, du1, v3_scale(e1, -du2)), inverse);
+    mask valid = is_finite(dpdu) & is_finite(dpdv);
+    Frame any = frame_with_jump(s->normal, (real)(0));
+    s->dpdu = v3_pick(valid, dpdu, any.s);
+    s->dpdv = v3_pick(valid, dpdv, any.t);
 }
 
 // Barycentric weights that keep points away from the sides stay below a third, the weight of the centroid.
@@ -115,7 +134,12 @@ static Surface surface_of_triangle(const Scene *scene, Ray ray, Hit hit, mask ac
     real u = real_min(real_max(s.u, inset), 1 - 2 * inset);
     real v = real_min(real_max(s.v, inset), 1 - inset - u);
     s.p = v3_mad(e1, u, v3_mad(e2, v, p0));
-    s.uv = triangle_uv(scene, triangle, s.u, s.v);
+    s.uv = v2_of((real)(0), (real)(0));
+    if (OPAL_HAS_uv) {
+        CornerUvs uvs = corner_uvs(scene, triangle);
+        s.uv = triangle_uv(uvs, s.u, s.v);
+        if (OPAL_HAS_tangents) set_triangle_tangents(uvs, e1, e2, &s);
+    }
     finish_surface(scene, ray, shading_normal(scene, corners, s.u, s.v, s.normal), mesh, &s);
     return s;
 }

@@ -64,9 +64,9 @@ static v3 mixed(v3 a, v3 b, real share) { // a + share (b - a) would lose a dim 
     return v3_mad(b, share, v3_scale(a, 1 - share));
 }
 
-static v3 texture_bitmap_color(const Scene *scene, uints at, v2 uv, mask active) {
+static v3 texture_bitmap_color(const Scene *scene, uints at, TexturePoint point, mask active) {
     global const texture_bitmap_record *record = (global const texture_bitmap_record *)scene->textures;
-    uv = texture_uv(record->to_uv, at, uv);
+    v2 uv = texture_uv(record->to_uv, at, point.uv);
     uints wrap = GATHER_WORD(uints, &record->wrap, at);
     mask nearest = to_mask(GATHER_WORD(uints, &record->nearest, at) != 0u);
     Bitmap b;

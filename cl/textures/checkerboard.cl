@@ -10,9 +10,9 @@
 // Is the coordinate in the first half of its period? The end of that half is.
 static mask in_first_half(real x) { return x - floor(x) <= R(0.5); }
 
-static v3 texture_checkerboard_color(const Scene *scene, uints at, v2 uv, mask active) {
+static v3 texture_checkerboard_color(const Scene *scene, uints at, TexturePoint point, mask active) {
     global const texture_checkerboard_record *record = (global const texture_checkerboard_record *)scene->textures;
-    uv = texture_uv(record->to_uv, at, uv);
+    v2 uv = texture_uv(record->to_uv, at, point.uv);
     mask first = in_first_half(uv.x) == in_first_half(uv.y);
     return v3_pick(first, texture_words(record->color0, at), texture_words(record->color1, at));
 }

@@ -19,6 +19,7 @@ double flatten_parallelogram(const EmittingMesh &from, EmitterRecord &record, Fl
     store(normal * (1 / area), own.normal);
     store(*from.mesh.radiance, 1, own.color);
     own.area = float(area);
+    own.uv_exchanged = std::get<Parallelogram>(from.mesh.shape).uv_exchanged;
     return area;
 }
 

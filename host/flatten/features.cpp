@@ -157,8 +157,12 @@ public:
     }
 
     Decision uv() const {
-        const bool textured = is_textured(description);
-        return {textured, textured ? "a material has a texture" : "no material has a texture"};
+        const bool needed = needs_uv(description);
+        return {needed, needed ? "something on a surface has a texture" : "nothing on a surface has a texture"};
+    }
+
+    Decision tangents() const {
+        return bsdfs([&](uint at) { return (bsdf_traits(scene.bsdfs[at]) & OPAL_TANGENTS) != 0; });
     }
 
     Decision light_textures() const {
@@ -295,6 +299,7 @@ bool has_general_kernel(unsigned feature) {
     case FEATURE_endless_paths:
     case FEATURE_hidden_emitters:
     case FEATURE_uv:
+    case FEATURE_tangents:
     case FEATURE_light_textures:
         return true;
     default:

@@ -2,6 +2,7 @@
 
 #include "base/log.h"
 #include "flatten/emitter_kinds.h"
+#include "flatten/store.h"
 
 #include <fmt/format.h>
 
@@ -26,7 +27,7 @@ bool has_normal(const Point3f &a, const Point3f &b, const Point3f &c) {
 
 class PrimitiveGatherer {
 public:
-    // with_uv: does the scene have textures?
+    // with_uv: are texture coordinates needed?
     PrimitiveGatherer(const Flattening &flattening, bool with_uv, FlatScene &scene)
         : flattening_(flattening), with_uv_(with_uv), scene_(scene) {}
 
@@ -72,8 +73,13 @@ private:
 
     void add_primitives(const Parallelogram &shape) {
         const uint first = add_vertices(shape.corners());
-        add_triangle(first, {0, 1, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE}, {{{0, 0}, {1, 0}, {0, 1}}});
-        add_triangle(first, {1, 3, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE}, {{{1, 0}, {1, 1}, {0, 1}}});
+        TriangleUv lower = {{{0, 0}, {1, 0}, {0, 1}}}, upper = {{{1, 0}, {1, 1}, {0, 1}}};
+        if (shape.uv_exchanged)
+            for (TriangleUv *uv : {&lower, &upper})
+                for (auto &corner : uv->corner)
+                    std::swap(corner[0], corner[1]);
+        add_triangle(first, {0, 1, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE}, lower);
+        add_triangle(first, {1, 3, 2}, {OPAL_NONE, OPAL_NONE, OPAL_NONE}, upper);
     }
 
     // A triangle without texture coordinates has its barycentric ones.
@@ -108,6 +114,12 @@ private:
             box.hi[axis] = std::nextafter(center[axis] + block.radius[0], Box::infinity);
         }
         scene_.sphere_blocks.push_back(block);
+        if (with_uv_) {
+            SphereFrame frame{};
+            for (size_t i = 0; i < 3; i++)
+                store(sphere.axes[i], frame.axis[i]);
+            scene_.sphere_frames.push_back(frame);
+        }
         soup.others.push_back({id, box, mesh_});
     }
 
@@ -168,7 +180,7 @@ Flattening find_flattening(const Extent &extent) {
 
 TriangleSoup gather_primitives(const SceneDescription &description, const Flattening &flattening, FlatScene &scene,
                                const std::function<void(uint)> &on_gathered) {
-    const bool with_uv = is_textured(description);
+    const bool with_uv = needs_uv(description);
     PrimitiveGatherer gatherer(flattening, with_uv, scene);
     std::size_t vertices = 0, normals = 0, triangles = 0;
     for (const Mesh &mesh : description.meshes)

@@ -87,8 +87,10 @@ bool has_light(const SceneDescription &scene) {
            std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh &mesh) { return mesh.radiance; });
 }
 
-bool is_textured(const SceneDescription &scene) {
-    return std::ranges::any_of(scene.meshes, [](const Mesh &mesh) { return mesh.bsdf.is_textured(); });
+bool needs_uv(const SceneDescription &scene) {
+    return std::ranges::any_of(scene.meshes, [](const Mesh &mesh) {
+        return mesh.texture || mesh.bsdf.is_textured() || (mesh.bsdf.traits() & OPAL_TANGENTS) != 0;
+    });
 }
 
 const Light *light_missed_by_bsdfs(const SceneDescription &scene) {

@@ -61,6 +61,7 @@ struct Mesh {
     Shape shape;
     Bsdf bsdf;
     std::optional<Color> radiance;    // emitted by its area emitter, W / (m^2 sr)
+    std::optional<Texture> texture;   // what multiplies it
     bool emits_on_both_sides = false; // else on the side of its shading normals
     SourcePlace place;
 };
@@ -129,8 +130,8 @@ struct SceneDescription {
     std::vector<PluginUse> plugins; // of a file of Mitsuba, in the order of their first use
 };
 
-bool has_light(const SceneDescription &scene);   // an emitter of any kind
-bool is_textured(const SceneDescription &scene); // has a texture on something
+bool has_light(const SceneDescription &scene); // an emitter of any kind
+bool needs_uv(const SceneDescription &scene);  // do textures or tangents on surfaces need texture coordinates?
 
 // The first light that no BSDF sample can hit, or null.
 const Light *light_missed_by_bsdfs(const SceneDescription &scene);

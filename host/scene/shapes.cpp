@@ -112,7 +112,9 @@ Extent Parallelogram::extent() const {
     return extent;
 }
 
-Parallelogram Parallelogram::moved(const Transform &by) const { return {by.point(origin), by.vector(u), by.vector(v)}; }
+Parallelogram Parallelogram::moved(const Transform &by) const {
+    return {by.point(origin), by.vector(u), by.vector(v), uv_exchanged};
+}
 
 std::string Parallelogram::text() const { return "parallelogram"; }
 
@@ -123,7 +125,10 @@ Extent Sphere::extent() const {
 
 Sphere Sphere::moved(const Transform &by) const {
     const double determinant = by.determinant();
-    return {by.point(center), radius * std::cbrt(std::abs(determinant)), inward != (determinant < 0)};
+    Sphere sphere = {by.point(center), radius * std::cbrt(std::abs(determinant)), inward != (determinant < 0), axes};
+    for (Vec3 &axis : sphere.axes)
+        axis = normalize(by.vector(axis));
+    return sphere;
 }
 
 std::string Sphere::text() const { return "sphere"; }

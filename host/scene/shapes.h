@@ -44,7 +44,8 @@ struct TriangleMesh {
 };
 
 struct Parallelogram {
-    Vec3 origin, u, v; // front side u x v
+    Vec3 origin, u, v;         // front side u x v
+    bool uv_exchanged = false; // texture coordinate u grows along the edge v, and v along u
 
     std::array<Vec3, 4> corners() const { return {origin, origin + u, origin + v, origin + u + v}; }
     Extent extent() const;
@@ -56,6 +57,9 @@ struct Sphere {
     Vec3 center;
     double radius = 1;
     bool inward = false; // whether its normals point to the centre: it is seen and emits inside
+    // Its own axes, unit vectors that may be left-handed. Texture coordinate u is the angle around z from x over 2 pi,
+    // v the angle from z over pi.
+    std::array<Vec3, 3> axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
     Extent extent() const;
     Sphere moved(const Transform &by) const; // a similarity, which may mirror: that turns the normals

@@ -25,7 +25,7 @@ Sources with_constant_texture() {
     REQUIRE(list.find(none) != std::string::npos);
     list.replace(list.find(none), none.size(), none + " TEXTURE(constant)");
     sources.files["textures/constant.cl"] =
-        "static v3 texture_constant_color(const Scene *scene, uints at, v2 uv, mask active) {\n"
+        "static v3 texture_constant_color(const Scene *scene, uints at, TexturePoint point, mask active) {\n"
         "    global const float *color = (global const float *)scene->textures + 1;\n"
         "    return v3_of(GATHER_WORD(real, color, at), GATHER_WORD(real, (color + 1), at),\n"
         "                 GATHER_WORD(real, (color + 2), at));\n"

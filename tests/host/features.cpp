@@ -125,7 +125,7 @@ TEST_CASE("features are what the scene and the strategy ask for, each with a rea
                                            FEATURE_emitter_spot,    FEATURE_emitter_directional, FEATURE_shape_sphere,
                                            FEATURE_camera_thinlens, FEATURE_camera_orthographic, FEATURE_sample_counts};
         const std::set<unsigned> of_its_own = {FEATURE_endless_paths, FEATURE_hidden_emitters, FEATURE_uv,
-                                               FEATURE_light_textures};
+                                               FEATURE_tangents, FEATURE_light_textures};
         description.meshes[0].bsdf = bsdf_null_record{};
         const Features others = flatten(description, 8).features;
         for (unsigned feature = 0; feature < FEATURE_COUNT; feature++) {

@@ -130,7 +130,7 @@ Parallelogram rectangle(const Transform &to_world, bool flip_normals) {
         throw Error("to_world leaves the rectangle no area, or makes it infinite");
     // u x v is the image of +z times the determinant.
     if ((to_world.determinant() < 0) != flip_normals)
-        std::swap(shape.u, shape.v);
+        shape = {shape.origin, shape.v, shape.u, true};
     return shape;
 }
 

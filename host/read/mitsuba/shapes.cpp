@@ -8,8 +8,6 @@
 
 #include <fmt/format.h>
 
-#include <bit>
-
 namespace opal::mitsuba {
 
 namespace {
@@ -70,42 +68,6 @@ Shape parse_cube(Object &object, const Transform &to_world, bool flip_normals) {
     return at_shape(object, [&] { return cube(to_world, flip_normals); });
 }
 
-// Exchanges u and v in all textures.
-void exchange_uv(Bsdf &bsdf) {
-    for (auto &[word, texture] : bsdf.textures)
-        std::visit(
-            [](auto &own) {
-                for (auto &row : own.to_uv)
-                    std::swap(row[0], row[1]);
-            },
-            texture);
-    for (Bsdf &child : bsdf.children)
-        exchange_uv(child);
-}
-
-// 0.5 instead of all textures.
-void remove_textures(Bsdf &bsdf) {
-    for (const Parameter &parameter : bsdf_parameters(bsdf.kind()))
-        if (bsdf.textures.erase(parameter.texture_word) > 0)
-            for (size_t i = 0; i < (parameter.type == ParameterType::COLOR ? 3 : 1); i++)
-                bsdf.words[parameter.word + i] = std::bit_cast<uint>(0.5f);
-    for (Bsdf &child : bsdf.children)
-        remove_textures(child);
-}
-
-// What the textures of a shape need that has no texture coordinates of its own.
-void fit_textures(const Object &object, bool is_turned, Mesh &mesh) {
-    if (std::holds_alternative<Parallelogram>(mesh.shape) && is_turned)
-        exchange_uv(mesh.bsdf); // rectangle() exchanges the sides to turn the normal
-    if (!std::holds_alternative<Sphere>(mesh.shape) || !mesh.bsdf.is_textured())
-        return;
-    const std::string message = "Opal has no textures on spheres yet";
-    if (!object.context().lenient)
-        return object.mistake(message);
-    warn(fmt::format("{}: {}; 0.5 stands in for them", object.place().text(), message));
-    remove_textures(mesh.bsdf);
-}
-
 const std::vector<Plugin<Shape (*)(Object &, const Transform &, bool)>> shape_types = {
     {"obj", "triangles", parse_obj},    {"ply", "triangles", parse_ply},
     {"sphere", "sphere", parse_sphere}, {"rectangle", "parallelogram", parse_rectangle},
@@ -143,7 +105,6 @@ void parse_shape(Importer &importer, Object &object, SceneDescription &scene) {
     bool is_made = false;
     importer.context().attempt(object, [&] {
         mesh.shape = type->parse(object, to_world, flip_normals);
-        fit_textures(object, (to_world.determinant() < 0) != flip_normals, mesh);
         is_made = true;
     });
     object.finish();
