@@ -15,13 +15,6 @@ struct Decision {
     std::string reason;
 };
 
-// The parameter of that name, or null.
-const Parameter *parameter_of(uint kind, const char *name) {
-    const auto parameters = bsdf_parameters(kind);
-    const auto found = std::ranges::find(parameters, name, &Parameter::name);
-    return found == parameters.end() ? nullptr : &*found;
-}
-
 std::string plural(std::size_t count, const char *one, const char *many) {
     return fmt::format("{} {}", count, count == 1 ? one : many);
 }
@@ -85,13 +78,17 @@ public:
     Decision ggx() const { return with_flag("ggx", 1); }
     Decision all_facets() const { return with_flag("sample_visible", 0); }
 
+    Decision anisotropic() const {
+        return bsdfs([&](uint at) { return is_anisotropic(bsdf_words(at)); });
+    }
+
     Decision tinted_glass() const {
         return bsdfs([&](uint at) {
             const uint kind = scene.bsdfs[at];
-            if (!parameter_of(kind, "specular_transmittance"))
+            if (!bsdf_parameter(kind, "specular_transmittance"))
                 return false;
             const auto is_tinted = [&](const char *name) {
-                const Parameter &parameter = *parameter_of(kind, name);
+                const Parameter &parameter = *bsdf_parameter(kind, name);
                 const auto is_one = [&](uint word) { return std::bit_cast<float>(word) == 1; };
                 return !std::all_of(&scene.bsdfs[at + parameter.word], &scene.bsdfs[at + parameter.word] + 3, is_one) ||
                        scene.bsdfs[at + parameter.texture_word] != OPAL_UNTEXTURED;
@@ -100,10 +97,13 @@ public:
         });
     }
 
+    // The words of the table from a record on.
+    std::span<const uint> bsdf_words(uint at) const { return std::span(scene.bsdfs).subspan(at); }
+
     // Meshes with a BSDF of facets whose flag is that.
     Decision with_flag(const char *name, uint value) const {
         return bsdfs([&](uint at) {
-            const Parameter *parameter = parameter_of(scene.bsdfs[at], name);
+            const Parameter *parameter = bsdf_parameter(scene.bsdfs[at], name);
             return parameter && scene.bsdfs[at + parameter->word] == value;
         });
     }
@@ -162,7 +162,9 @@ public:
     }
 
     Decision tangents() const {
-        return bsdfs([&](uint at) { return (bsdf_traits(scene.bsdfs[at]) & OPAL_TANGENTS) != 0; });
+        return bsdfs([&](uint at) {
+            return (bsdf_traits(scene.bsdfs[at]) & OPAL_TANGENTS) != 0 || is_anisotropic(bsdf_words(at));
+        });
     }
 
     Decision light_textures() const {
@@ -295,6 +297,7 @@ bool has_general_kernel(unsigned feature) {
     case FEATURE_beckmann:
     case FEATURE_ggx:
     case FEATURE_all_facets:
+    case FEATURE_anisotropic:
     case FEATURE_tinted_glass:
     case FEATURE_endless_paths:
     case FEATURE_hidden_emitters:

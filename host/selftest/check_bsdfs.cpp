@@ -57,7 +57,8 @@ Findings check_each_sample(const Planes &drawn, const Planes &f, const std::stri
 // f cos / pdf, recomputed from the drawn direction (which rounds its half vector), against the sample's weight, on
 // average; and the mean weight less 5 standard errors.
 Findings check_samples(KernelProbe &probe, unsigned id, Vec3 wi, const std::string &subject, const Effort &effort) {
-    const Planes drawn = probe.bsdf_sample(id, wi, random_numbers(probe, effort.draws, effort.seed + 77));
+    const Planes of_power = probe.bsdf_sample(id, wi, random_numbers(probe, effort.draws, effort.seed + 77));
+    const Planes drawn = of_radiance(of_power); // as f is
     std::vector<Vec3> wos;
     for (size_t i = 0; i < drawn.count; i++)
         wos.push_back(drawn.vec3(BSDF_WO_X, i));
@@ -67,7 +68,7 @@ Findings check_samples(KernelProbe &probe, unsigned id, Vec3 wi, const std::stri
         stats::Moments weights, differences;
         for (size_t i = 0; i < drawn.count; i++) {
             const double weight = drawn.at(BSDF_WEIGHT_R + c, i), pdf = drawn.at(BSDF_PDF, i);
-            weights.add(weight);
+            weights.add(of_power.at(BSDF_WEIGHT_R + c, i));
             if (weight > 0 && !is_discrete_sample(drawn, i))
                 differences.add(std::abs(f.at(EVAL_R + c, i) * std::abs(wos[i].z) / (pdf * weight) - 1));
         }
@@ -81,17 +82,28 @@ Findings check_samples(KernelProbe &probe, unsigned id, Vec3 wi, const std::stri
     return findings;
 }
 
+// The eta of the samples that pass to the other side, squared; 1 where there are none.
+double passing_eta2(KernelProbe &probe, unsigned id, Vec3 wi) {
+    const Planes drawn = probe.bsdf_sample(id, wi, random_numbers(probe, 64, 0));
+    for (size_t i = 0; i < drawn.count; i++)
+        if (drawn.at(BSDF_WO_Z, i) * wi.z < 0 && !is_discrete_sample(drawn, i))
+            return double(drawn.at(BSDF_ETA, i)) * drawn.at(BSDF_ETA, i);
+    return 1;
+}
+
+// f(a, b) eta^2 = f(b, a), with eta the index of b's side over that of a's side (Veach 1997, section 5.2).
 Finding check_reciprocity(KernelProbe &probe, unsigned id, Vec3 wi, const std::string &subject) {
     std::vector<Vec3> wos;
-    for (double degrees : {0.0, 20.0, 50.0, 75.0})
+    for (double degrees : {0.0, 20.0, 50.0, 75.0, 120.0, 160.0})
         for (double azimuth : {0.3, 2.0, 3.3})
             wos.push_back(direction_at(wi.z > 0 ? degrees : 180 - degrees, azimuth));
+    const double eta2 = passing_eta2(probe, id, wi);
     const Planes there = probe.bsdf_eval(id, wi, wos);
     double error = 0;
     for (size_t i = 0; i < wos.size(); i++) {
         const Planes back = probe.bsdf_eval(id, wos[i], std::span(&wi, 1));
         for (size_t c = 0; c < 3; c++) {
-            const double a = there.at(EVAL_R + c, i), b = back.at(EVAL_R + c, 0);
+            const double a = there.at(EVAL_R + c, i) * (wos[i].z * wi.z < 0 ? eta2 : 1), b = back.at(EVAL_R + c, 0);
             error = worst_of(error, std::abs(a - b) / std::max({a, b, 1e-30}));
         }
     }
