@@ -112,7 +112,8 @@ typedef struct {
 } emitter_directional_record;
 
 // One emitter. Lanes read the record of a kind from emitters of another kind too, and drop what they read: a member
-// that is an index into a table must stand before `u`, or be used in the kind's own lanes alone. The members of `u` have a prefix, as "constant" is a keyword.
+// that is an index into a table must stand before `u`, or be used in the kind's own lanes alone. The members of `u`
+// have a prefix, as "constant" is a keyword.
 #define OPAL_EMITTER_MEMBER(name, traits) emitter_##name##_record of_##name;
 typedef struct {
     uint kind;            // EMITTER_*
