@@ -12,6 +12,8 @@ namespace opal {
 
 namespace {
 
+constexpr double weight_rounding = 1e-6; // weights are floats
+
 // The unit direction at `degrees` to the normal; azimuth in radians.
 Vec3 direction_at(double degrees, double azimuth = 0.3) {
     const double theta = degrees * std::numbers::pi / 180;
@@ -26,6 +28,12 @@ Planes random_numbers(KernelProbe &probe, size_t count, unsigned seed) {
 
 // Sample i went in a single direction, which f and pdf know nothing of.
 bool is_discrete_sample(const Planes &drawn, size_t i) { return drawn.at(BSDF_DISCRETE, i) != 0; }
+
+// Sample i went nowhere: its direction, to the side where that kind of light does not go, means nothing.
+bool is_failed_sample(const Planes &drawn, size_t i) {
+    return drawn.at(BSDF_PDF, i) == 0 && drawn.at(BSDF_WEIGHT_R, i) == 0 && drawn.at(BSDF_WEIGHT_G, i) == 0 &&
+           drawn.at(BSDF_WEIGHT_B, i) == 0;
+}
 
 // Whether sample i has the weight f cos / pdf in every channel and the density that the BSDF (f) gives its direction,
 // to 2 %. Directions are rounded: the half vector of one is off by some 2^-24 / (wi . h), which Beckmann's density
@@ -44,7 +52,7 @@ Findings check_each_sample(const Planes &drawn, const Planes &f, const std::stri
     double wrong = 0;
     stats::Moments density_errors;
     for (size_t i = 0; i < drawn.count; i++) {
-        if (is_discrete_sample(drawn, i))
+        if (is_discrete_sample(drawn, i) || is_failed_sample(drawn, i))
             continue;
         const double pdf = f.at(EVAL_PDF, i), own = drawn.at(BSDF_PDF, i);
         wrong += !sample_fits(drawn, f, i);
@@ -73,7 +81,7 @@ Findings check_samples(KernelProbe &probe, unsigned id, Vec3 wi, const std::stri
                 differences.add(std::abs(f.at(EVAL_R + c, i) * std::abs(wos[i].z) / (pdf * weight) - 1));
         }
         weight_error = worst_of(weight_error, differences.mean());
-        energy = worst_of(energy, weights.mean() - 5 * std::sqrt(weights.variance_of_mean()));
+        energy = worst_of(energy, weights.mean() - 5 * std::sqrt(weights.variance_of_mean()) - weight_rounding);
     }
     Findings findings = {at_most("BSDFs: albedo less 5 standard errors", energy, 1, subject),
                          at_most("BSDFs: weight against f cos / pdf, off by", weight_error, 1e-4, subject)};
@@ -82,8 +90,9 @@ Findings check_samples(KernelProbe &probe, unsigned id, Vec3 wi, const std::stri
     return findings;
 }
 
-// The eta of the samples that pass to the other side, squared; 1 where there are none.
-double passing_eta2(KernelProbe &probe, unsigned id, Vec3 wi) {
+// The eta of the samples that pass from wi's side to the other one, squared; 1 where there are none.
+double passing_eta2(KernelProbe &probe, unsigned id, Vec3 from) {
+    const Vec3 wi{0, 0, std::copysign(1, from.z)}; // from which most pass
     const Planes drawn = probe.bsdf_sample(id, wi, random_numbers(probe, 64, 0));
     for (size_t i = 0; i < drawn.count; i++)
         if (drawn.at(BSDF_WO_Z, i) * wi.z < 0 && !is_discrete_sample(drawn, i))
@@ -133,13 +142,16 @@ bool is_seen_from_behind(KernelProbe &probe, unsigned id) {
 // law is not known here.
 struct Boundary {
     double near, far;
+    double reflected, refracted; // factors of what is, of red light
 };
 std::optional<Boundary> boundary_of(const Bsdf &bsdf, Vec3 wi) {
     if (!bsdf.is<bsdf_dielectric_record>())
         return {};
     const auto dielectric = bsdf.as<bsdf_dielectric_record>();
     const double inside = dielectric.int_ior.value, outside = dielectric.ext_ior.value;
-    return wi.z > 0 ? Boundary{outside, inside} : Boundary{inside, outside};
+    const double reflected = dielectric.specular_reflectance.value[0],
+                 refracted = dielectric.specular_transmittance.value[0];
+    return wi.z > 0 ? Boundary{outside, inside, reflected, refracted} : Boundary{inside, outside, reflected, refracted};
 }
 
 // Where sample i goes, off from the mirrored direction or from the one that is refracted by the eta it states.
@@ -152,11 +164,13 @@ double direction_error(const Planes &drawn, size_t i, Vec3 wi) {
     return length(wo - Vec3{-wi.x / eta, -wi.y / eta, -std::copysign(cosine, wi.z)});
 }
 
-// What all samples of a lossless boundary carry, which is all power, and the eta of those that are refracted.
+// What all samples of a boundary carry, which is all power but for the factors, and the eta of those that are
+// refracted.
 double boundary_error(const Planes &drawn, size_t i, Vec3 wi, const Boundary &boundary) {
     const bool refracted = drawn.at(BSDF_WO_Z, i) * wi.z < 0;
     const double eta = refracted ? boundary.far / boundary.near : 1;
-    return std::max(std::abs(double(drawn.at(BSDF_WEIGHT_R, i)) - 1), std::abs(drawn.at(BSDF_ETA, i) / eta - 1));
+    const double weight = refracted ? boundary.refracted : boundary.reflected;
+    return std::max(std::abs(double(drawn.at(BSDF_WEIGHT_R, i)) - weight), std::abs(drawn.at(BSDF_ETA, i) / eta - 1));
 }
 
 // From both sides: where a discrete BSDF sends light, with which weight, and how often it reflects.
@@ -181,8 +195,7 @@ Findings check_discrete(KernelProbe &probe, unsigned id, const Material &materia
                 error = worst_of(error, std::abs(drawn.at(BSDF_WEIGHT_R, i) - (wi.z > 0)));
         }
         findings.push_back(at_most("mirror, dielectric: direction and weight, off by", error, 3e-5, subject));
-        const double rounding = 1e-6; // weights are floats
-        const double albedo = weights.mean() - 5 * std::sqrt(weights.variance_of_mean()) - rounding;
+        const double albedo = weights.mean() - 5 * std::sqrt(weights.variance_of_mean()) - weight_rounding;
         findings.push_back(at_most("BSDFs: albedo less 5 standard errors", albedo, 1, subject));
         if (!boundary)
             continue;

@@ -715,7 +715,8 @@ TEST_CASE_METHOD(MitsubaFixture, "plug-ins that Opal does not have are all named
     CHECK(
         error_in(body) ==
         ":2:1: unknown shape type 'cylinder' (2 in the scene); available: obj, ply, sphere, rectangle, cube\n"
-        ":3:24: unknown bsdf type 'plastic' (2 in the scene); available: diffuse, dielectric, conductor, twosided, "
+        ":3:24: unknown bsdf type 'plastic' (2 in the scene); available: diffuse, dielectric, thindielectric, "
+        "roughdielectric, conductor, roughconductor, twosided, "
         "mask, "
         "null\n"
         ":5:1: unknown emitter type 'envmap'; available: area, point, spot, directional, constant\n"

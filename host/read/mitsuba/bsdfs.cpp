@@ -105,7 +105,8 @@ void set_facets(Importer &importer, Object &object, Bsdf &bsdf) {
     const bool one = object.has("alpha");
     for (const char *name : {"alpha_u", "alpha_v"}) {
         object.check(!one || !object.has(name), name, "there is either alpha, or alpha_u and alpha_v");
-        set_parameter(importer, object, one ? "alpha" : name, bsdf, name);
+        set_parameter(importer, object, "alpha", bsdf, name);
+        set_parameter(importer, object, name, bsdf, name);
     }
     if (!one && object.has("alpha_u") != object.has("alpha_v"))
         object.mistake("alpha_u and alpha_v must be given together");
