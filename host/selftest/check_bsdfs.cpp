@@ -95,7 +95,7 @@ double passing_eta2(KernelProbe &probe, unsigned id, Vec3 from) {
     const Vec3 wi{0, 0, std::copysign(1, from.z)}; // from which most pass
     const Planes drawn = probe.bsdf_sample(id, wi, random_numbers(probe, 64, 0));
     for (size_t i = 0; i < drawn.count; i++)
-        if (drawn.at(BSDF_WO_Z, i) * wi.z < 0 && !is_discrete_sample(drawn, i))
+        if (drawn.at(BSDF_WO_Z, i) * wi.z < 0 && !is_discrete_sample(drawn, i) && !is_failed_sample(drawn, i))
             return double(drawn.at(BSDF_ETA, i)) * drawn.at(BSDF_ETA, i);
     return 1;
 }

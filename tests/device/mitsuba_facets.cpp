@@ -391,7 +391,9 @@ TEST_CASE("No metal or glass of facets gains light", "[mitsuba_facets]") {
             const double albedo = sum / double(drawn.count);
             INFO((c.is_glass ? "glass " : "metal ") << c.distribution << " " << c.alpha_u << " " << c.alpha_v << " "
                                                     << c.ior << " at " << degrees << " degrees");
-            CHECK(albedo <= 1 + 1e-4);
+            // The fit of Beckmann's G1 is 1 where the exact one is down to 1 / 1.0018. Glass of nearly equal indices,
+            // whose light goes almost straight on, gains that, as Mitsuba's does.
+            CHECK(albedo <= 1 + (c.is_glass && c.distribution == "beckmann" ? 1.8e-3 : 1e-4));
             if (c.alpha_u < 1e-3) // all but smooth
                 CHECK(albedo == Approx(c.is_glass || degrees < 90 ? 1 : 0).margin(1e-3));
         }
