@@ -2,6 +2,7 @@
 #ifndef OPAL_BSDF_LIST_H
 #define OPAL_BSDF_LIST_H
 
+#include "bsdfs/conductor.h"
 #include "bsdfs/dielectric.h"
 #include "bsdfs/diffuse.h"
 #include "bsdfs/mask.h"
@@ -9,6 +10,9 @@
 #include "bsdfs/mirror.h"
 #include "bsdfs/null.h"
 #include "bsdfs/phong.h"
+#include "bsdfs/roughconductor.h"
+#include "bsdfs/roughdielectric.h"
+#include "bsdfs/thindielectric.h"
 #include "bsdfs/twosided.h"
 #include "shared/glue.h"
 #include "shared/parameters.h"
@@ -29,7 +33,11 @@ enum {
     BSDF(dielectric, OPAL_DISCRETE | OPAL_TRANSMITS) \
     BSDF(microfacet, OPAL_SMOOTH) \
     BSDF(phong, OPAL_SMOOTH) \
-    BSDF(null, OPAL_DISCRETE | OPAL_TRANSMITS)
+    BSDF(null, OPAL_DISCRETE | OPAL_TRANSMITS) \
+    BSDF(conductor, OPAL_DISCRETE) \
+    BSDF(roughconductor, OPAL_SMOOTH) \
+    BSDF(thindielectric, OPAL_DISCRETE | OPAL_TRANSMITS) \
+    BSDF(roughdielectric, OPAL_SMOOTH | OPAL_TRANSMITS)
 
 // BSDFs that lead to others, which are their parameters of type BSDF: BSDF(name, traits of its own). The others' traits
 // come to them.

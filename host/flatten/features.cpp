@@ -74,6 +74,40 @@ public:
         });
     }
 
+    Decision beckmann() const { return with_flag("ggx", 0); }
+    Decision ggx() const { return with_flag("ggx", 1); }
+    Decision all_facets() const { return with_flag("sample_visible", 0); }
+
+    Decision anisotropic() const {
+        return bsdfs([&](uint at) { return is_anisotropic(bsdf_words(at)); });
+    }
+
+    Decision tinted_glass() const {
+        return bsdfs([&](uint at) {
+            const uint kind = scene.bsdfs[at];
+            if (!bsdf_parameter(kind, "specular_transmittance"))
+                return false;
+            const auto is_tinted = [&](const char *name) {
+                const Parameter &parameter = *bsdf_parameter(kind, name);
+                const auto is_one = [&](uint word) { return std::bit_cast<float>(word) == 1; };
+                return !std::all_of(&scene.bsdfs[at + parameter.word], &scene.bsdfs[at + parameter.word] + 3, is_one) ||
+                       scene.bsdfs[at + parameter.texture_word] != OPAL_UNTEXTURED;
+            };
+            return is_tinted("specular_reflectance") || is_tinted("specular_transmittance");
+        });
+    }
+
+    // The words of the table from a record on.
+    std::span<const uint> bsdf_words(uint at) const { return std::span(scene.bsdfs).subspan(at); }
+
+    // Meshes with a BSDF of facets whose flag is that.
+    Decision with_flag(const char *name, uint value) const {
+        return bsdfs([&](uint at) {
+            const Parameter *parameter = bsdf_parameter(scene.bsdfs[at], name);
+            return parameter && scene.bsdfs[at + parameter->word] == value;
+        });
+    }
+
     // Meshes that have such a BSDF; is_meant: of a record, by its first word.
     template <class Is> Decision bsdfs(Is is_meant) const {
         if (!integrator.has(OPAL_ASKS_BSDFS))
@@ -128,7 +162,9 @@ public:
     }
 
     Decision tangents() const {
-        return bsdfs([&](uint at) { return (bsdf_traits(scene.bsdfs[at]) & OPAL_TANGENTS) != 0; });
+        return bsdfs([&](uint at) {
+            return (bsdf_traits(scene.bsdfs[at]) & OPAL_TANGENTS) != 0 || is_anisotropic(bsdf_words(at));
+        });
     }
 
     Decision light_textures() const {
@@ -253,9 +289,27 @@ bool general_has(unsigned feature, int lanes) {
 
 // Features whose scenes have a general kernel of their own, which does not ask at run time.
 bool has_general_kernel(unsigned feature) {
-    return feature == FEATURE_endless_paths || feature == FEATURE_hidden_emitters || feature == FEATURE_uv ||
-           feature == FEATURE_tangents || feature == FEATURE_light_textures || feature == FEATURE_emitter_projector ||
-           feature == FEATURE_emitter_envmap;
+    switch (feature) {
+    case FEATURE_bsdf_conductor:
+    case FEATURE_bsdf_roughconductor:
+    case FEATURE_bsdf_thindielectric:
+    case FEATURE_bsdf_roughdielectric:
+    case FEATURE_beckmann:
+    case FEATURE_ggx:
+    case FEATURE_all_facets:
+    case FEATURE_anisotropic:
+    case FEATURE_tinted_glass:
+    case FEATURE_endless_paths:
+    case FEATURE_hidden_emitters:
+    case FEATURE_uv:
+    case FEATURE_tangents:
+    case FEATURE_light_textures:
+    case FEATURE_emitter_projector:
+    case FEATURE_emitter_envmap:
+        return true;
+    default:
+        return false;
+    }
 }
 
 // Features of a second program for all scenes, which serves scenes that have one of these. Scenes of Nori's own kinds

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <map>
 
 namespace opal {
@@ -115,6 +116,11 @@ private:
             return check(bsdf.as<bsdf_diffuse_record>(), place);
         case BSDF_dielectric:
             return check(bsdf.as<bsdf_dielectric_record>(), place);
+        case BSDF_thindielectric:
+            return check(bsdf.as<bsdf_thindielectric_record>(), place);
+        case BSDF_roughconductor:
+        case BSDF_roughdielectric:
+            return check_facets(bsdf, place);
         case BSDF_microfacet:
             return check(bsdf.as<bsdf_microfacet_record>(), place);
         case BSDF_phong:
@@ -128,10 +134,19 @@ private:
                         albedo);
     }
 
-    void check(const bsdf_dielectric_record &dielectric, const SourcePlace &place) {
+    // A boundary between two media: a dielectric, or a thin one.
+    template <class Boundary> void check(const Boundary &dielectric, const SourcePlace &place) {
         if (dielectric.int_ior.value == dielectric.ext_ior.value)
             add_warning(place, "intIOR and extIOR are both {:g}: the surface cannot be seen, and costs a bounce",
                         dielectric.int_ior.value);
+    }
+
+    void check_facets(const Bsdf &bsdf, const SourcePlace &place) {
+        for (const char *name : {"alpha_u", "alpha_v"})
+            if (const float alpha = std::bit_cast<float>(bsdf.words[bsdf_parameter(bsdf.kind(), name)->word]);
+                alpha < LEAST_ALPHA)
+                add_warning(place, "{} {:g} is below {:g}, the least roughness that was tested: that stands in for it",
+                            name, alpha, LEAST_ALPHA);
     }
 
     void check(const bsdf_microfacet_record &microfacet, const SourcePlace &place) {

@@ -1,5 +1,7 @@
 #include "scene/scene.h"
 
+#include "scene/parameters.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,6 +33,8 @@ unsigned bsdf_traits(unsigned kind) {
 
 unsigned Bsdf::traits() const {
     unsigned traits = bsdf_traits(kind()) & ~OPAL_HOLDS_OPAQUE;
+    if (is_anisotropic(words))
+        traits |= OPAL_TANGENTS;
     for (const Bsdf &child : children)
         traits |= child.traits();
     return traits;

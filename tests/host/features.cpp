@@ -117,6 +117,29 @@ TEST_CASE("features are what the scene and the strategy ask for, each with a rea
         strategy.rr_prob = 0.95;
         CHECK_FALSE(endless());
     }
+    SECTION("metals and glass") {
+        const auto with = [&](const Bsdf &bsdf) {
+            description.meshes[0].bsdf = bsdf;
+            return flatten(description, 8).features;
+        };
+        const Features rough = with(bsdf_roughconductor_record{.ggx = 1});
+        CHECK(rough[FEATURE_ggx]);
+        CHECK_FALSE(rough[FEATURE_beckmann]);
+        CHECK_FALSE(rough[FEATURE_all_facets]);
+        CHECK_FALSE(rough[FEATURE_tangents]);
+        CHECK(with(bsdf_roughdielectric_record{.sample_visible = 0})[FEATURE_all_facets]);
+        const Features brushed = with(bsdf_roughconductor_record{.alpha_u = 0.2});
+        CHECK(brushed[FEATURE_beckmann]);
+        CHECK(brushed[FEATURE_anisotropic]);
+        CHECK(brushed[FEATURE_tangents]);
+        CHECK(brushed[FEATURE_uv]);
+        CHECK_FALSE(with(bsdf_dielectric_record{})[FEATURE_tinted_glass]);
+        CHECK(with(bsdf_thindielectric_record{.specular_transmittance = 0.5})[FEATURE_tinted_glass]);
+        Bsdf textured = bsdf_dielectric_record{};
+        textured.textures[bsdf_parameter(BSDF_dielectric, "specular_reflectance")->texture_word] =
+            CheckerboardTexture{};
+        CHECK(with(textured)[FEATURE_tinted_glass]);
+    }
     SECTION("everything without specialisation") {
         description.strategy.specialise = Specialise::off;
         const Features features = flatten(description, 8).features;
@@ -124,9 +147,22 @@ TEST_CASE("features are what the scene and the strategy ask for, each with a rea
         const std::set<unsigned> second = {FEATURE_bsdf_mask,       FEATURE_bsdf_null,           FEATURE_emitter_sphere,
                                            FEATURE_emitter_spot,    FEATURE_emitter_directional, FEATURE_shape_sphere,
                                            FEATURE_camera_thinlens, FEATURE_camera_orthographic, FEATURE_sample_counts};
-        const std::set<unsigned> of_its_own = {
-            FEATURE_endless_paths,     FEATURE_hidden_emitters, FEATURE_uv, FEATURE_tangents, FEATURE_light_textures,
-            FEATURE_emitter_projector, FEATURE_emitter_envmap};
+        const std::set<unsigned> of_its_own = {FEATURE_endless_paths,
+                                               FEATURE_hidden_emitters,
+                                               FEATURE_uv,
+                                               FEATURE_tangents,
+                                               FEATURE_light_textures,
+                                               FEATURE_emitter_projector,
+                                               FEATURE_emitter_envmap,
+                                               FEATURE_bsdf_conductor,
+                                               FEATURE_bsdf_roughconductor,
+                                               FEATURE_bsdf_thindielectric,
+                                               FEATURE_bsdf_roughdielectric,
+                                               FEATURE_beckmann,
+                                               FEATURE_ggx,
+                                               FEATURE_all_facets,
+                                               FEATURE_anisotropic,
+                                               FEATURE_tinted_glass};
         description.meshes[0].bsdf = bsdf_null_record{};
         const Features others = flatten(description, 8).features;
         for (unsigned feature = 0; feature < FEATURE_COUNT; feature++) {
