@@ -106,6 +106,9 @@ SceneDescription rough_floor(double alpha) { return floor_under(lamp_over({0, 0.
 SceneDescription grazed_floor(double degrees) {
     return floor_under(lamp_over({0, 0.6, 0.5}, 0.5, 4), microfacet(0.1), std::tan(degrees * (std::numbers::pi / 180)));
 }
+SceneDescription principled_floor(double roughness) {
+    return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4), principled(roughness));
+}
 SceneDescription phong_floor(double exponent) { return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4), phong(exponent)); }
 
 SceneDescription glass_cube(double ior) {
@@ -431,6 +434,13 @@ const std::vector<StressRow> &stress_rows() {
          .values = reversed(decades(-3, 1)),
          .start = 10,
          .picture = grazed_floor},
+        {.name = "principled",
+         .stretched = "roughness of a principled floor",
+         .values = joined({0}, decades(-4, 0)),
+         .start = 1,
+         .promised_from = 0,
+         .promised_to = 1,
+         .picture = principled_floor},
         {.name = "phong",
          .stretched = "exponent",
          .values = joined({0}, decades(0, 8)),

@@ -27,6 +27,11 @@ Planes random_numbers(KernelProbe &probe, size_t count, unsigned seed) {
 // Sample i went in a single direction, which f and pdf know nothing of.
 bool is_discrete_sample(const Planes &drawn, size_t i) { return drawn.at(BSDF_DISCRETE, i) != 0; }
 
+// Sample i went nowhere: its lobe sent it to a side where it reflects nothing. Another lobe may have a density there.
+bool is_failed_sample(const Planes &drawn, size_t i) {
+    return drawn.at(BSDF_PDF, i) == 0 && length(drawn.vec3(BSDF_WEIGHT_R, i)) == 0;
+}
+
 // Whether sample i has the weight f cos / pdf in every channel and the density that the BSDF (f) gives its direction,
 // to 2 %. Directions are rounded: the half vector of one is off by some 2^-24 / (wi . h), which Beckmann's density
 // magnifies by 2 tan / alpha^2.
@@ -44,7 +49,7 @@ Findings check_each_sample(const Planes &drawn, const Planes &f, const std::stri
     double wrong = 0;
     stats::Moments density_errors;
     for (size_t i = 0; i < drawn.count; i++) {
-        if (is_discrete_sample(drawn, i))
+        if (is_discrete_sample(drawn, i) || is_failed_sample(drawn, i))
             continue;
         const double pdf = f.at(EVAL_PDF, i), own = drawn.at(BSDF_PDF, i);
         wrong += !sample_fits(drawn, f, i);

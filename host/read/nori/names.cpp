@@ -25,6 +25,7 @@ struct OtherProperty {
 // and whose directional light has the irradiance as `power` or `radiance`.
 const std::vector<OtherProperty> other_properties = {
     {"bsdf", "", "reflectance", "albedo"},
+    {"bsdf", "disney", "subsurface", "flatness"},
     {"camera", "", "radius", "lensRadius"},
     {"camera", "", "apertureRadius", "lensRadius"},
     {"camera", "", "aperture", "lensRadius"},
