@@ -124,6 +124,9 @@ SceneDescription metal_floor(double alpha) {
     return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4),
                        bsdf_roughconductor_record{.eta = 0.2, .k = 3.9, .alpha_u = alpha, .alpha_v = alpha, .ggx = 1});
 }
+SceneDescription principled_floor(double roughness) {
+    return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4), principled(roughness));
+}
 SceneDescription phong_floor(double exponent) { return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4), phong(exponent)); }
 
 // A cube in a bright room.
@@ -485,6 +488,13 @@ const std::vector<StressRow> &stress_rows() {
          .values = reversed(decades(-3, 1)),
          .start = 10,
          .picture = grazed_floor},
+        {.name = "principled",
+         .stretched = "roughness of a principled floor",
+         .values = joined({0}, decades(-4, 0)),
+         .start = 1,
+         .promised_from = 0,
+         .promised_to = 1,
+         .picture = principled_floor},
         {.name = "phong",
          .stretched = "exponent",
          .values = joined({0}, decades(0, 8)),

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace opal {
@@ -163,7 +164,7 @@ public:
 
     Decision tangents() const {
         return bsdfs([&](uint at) {
-            return (bsdf_traits(scene.bsdfs[at]) & OPAL_TANGENTS) != 0 || is_anisotropic(bsdf_words(at));
+            return (traits_of_record(scene.bsdfs, at) & OPAL_TANGENTS) != 0 || is_anisotropic(bsdf_words(at));
         });
     }
 
@@ -279,6 +280,24 @@ std::array<uint, BSDF_COUNT> find_textured(const FlatScene &scene, bool speciali
     return textured;
 }
 
+// The numbers of each kind of BSDF that are not 0 on some mesh, of kinds of which kernels ask that; else all.
+std::array<uint, BSDF_COUNT> find_nonzero(const FlatScene &scene, bool specialise) {
+    std::array<uint, BSDF_COUNT> nonzero{};
+    for (uint kind = 0; kind < BSDF_COUNT; kind++)
+        nonzero[kind] = specialise && bsdf_traits(kind) & OPAL_MANY_LOBES ? 0 : ~0u;
+    for (const MeshRecord &mesh : scene.meshes)
+        visit_bsdfs(scene, mesh.bsdf, [&](uint at) {
+            uint place = 1;
+            for (const Parameter &parameter : bsdf_parameters(scene.bsdfs[at])) {
+                if (parameter.type == ParameterType::NUMBER &&
+                    std::bit_cast<float>(scene.bsdfs[at + parameter.word]) != 0)
+                    nonzero[scene.bsdfs[at]] |= place;
+                place *= 2;
+            }
+        });
+    return nonzero;
+}
+
 // Does a program for all scenes have the feature? Where no scene of that width has it, or where it costs most scenes
 // more than it saves a few, it has not: prefetching a tree that fits into the caches takes 5 to 10 % of its time.
 bool general_has(unsigned feature, int lanes) {
@@ -294,6 +313,9 @@ bool has_general_kernel(unsigned feature) {
     case FEATURE_bsdf_roughconductor:
     case FEATURE_bsdf_thindielectric:
     case FEATURE_bsdf_roughdielectric:
+    case FEATURE_bsdf_principled:
+    case FEATURE_bsdf_principledthin:
+    case FEATURE_bsdf_oren_nayar:
     case FEATURE_beckmann:
     case FEATURE_ggx:
     case FEATURE_all_facets:
@@ -372,6 +394,7 @@ Features find_features(const SceneDescription &description, const FlatScene &sce
     }
     features.loop = integrator_of(description.strategy).loop;
     features.textured = find_textured(scene, specialise);
+    features.nonzero = find_nonzero(scene, specialise);
     return features;
 }
 
@@ -381,8 +404,10 @@ Features shared_features(const std::vector<FlatScene> &scenes) {
         for (std::size_t i = 0; i < shared.list.size(); i++)
             if (scene.features.list[i].on && !shared.list[i].on)
                 shared.list[i] = scene.features.list[i];
-        for (std::size_t kind = 0; kind < shared.textured.size(); kind++)
+        for (std::size_t kind = 0; kind < shared.textured.size(); kind++) {
             shared.textured[kind] |= scene.features.textured[kind];
+            shared.nonzero[kind] |= scene.features.nonzero[kind];
+        }
         for (int axis = 0; axis < AXIS_COUNT; axis++)
             if (scene.features.axes[axis] != shared.axes[axis]) {
                 shared.axes[axis] = -1;

@@ -26,6 +26,7 @@ struct Feature {
 struct Features {
     std::array<Feature, FEATURE_COUNT> list; // by FEATURE_*
     std::array<uint, BSDF_COUNT> textured{}; // by BSDF_*: the parameters that have a texture, a bit each in their order
+    std::array<uint, BSDF_COUNT> nonzero{};  // by BSDF_*: those that may be other than 0, of kinds of OPAL_MANY_LOBES
     std::string loop = "render";             // the kernel file that drives the integrator
     std::array<int, AXIS_COUNT> axes{};      // CHOICE_* or -1
     std::array<std::string, AXIS_COUNT> axis_reasons;

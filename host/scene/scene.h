@@ -35,6 +35,8 @@ inline const std::string &name_of(Dialect dialect) { return dialects()[static_ca
 // Names of kinds, as the XML gives them: "diffuse".
 const char *bsdf_name(unsigned kind);   // kind: BSDF_*
 unsigned bsdf_traits(unsigned kind);    // OPAL_SMOOTH and so on, as bits; of a kind that leads to others its own
+// Those of the record whose first word is words[at]: what numbers of 0 take away is not among them.
+unsigned traits_of_record(std::span<const uint> words, size_t at);
 const char *camera_name(unsigned kind); // kind: CAMERA_*
 
 // A material: the record of its kind, ready for the device but for the places of the BSDFs that it leads to. By default

@@ -29,10 +29,9 @@ Planes random_numbers(KernelProbe &probe, size_t count, unsigned seed) {
 // Sample i went in a single direction, which f and pdf know nothing of.
 bool is_discrete_sample(const Planes &drawn, size_t i) { return drawn.at(BSDF_DISCRETE, i) != 0; }
 
-// Sample i went nowhere: its direction, to the side where that kind of light does not go, means nothing.
+// Sample i went nowhere: its lobe sent it to a side where it reflects nothing. Another lobe may have a density there.
 bool is_failed_sample(const Planes &drawn, size_t i) {
-    return drawn.at(BSDF_PDF, i) == 0 && drawn.at(BSDF_WEIGHT_R, i) == 0 && drawn.at(BSDF_WEIGHT_G, i) == 0 &&
-           drawn.at(BSDF_WEIGHT_B, i) == 0;
+    return drawn.at(BSDF_PDF, i) == 0 && length(drawn.vec3(BSDF_WEIGHT_R, i)) == 0;
 }
 
 // Whether sample i has the weight f cos / pdf in every channel and the density that the BSDF (f) gives its direction,

@@ -1,6 +1,8 @@
 // BSDFs against values that Mitsuba 3.9.1 (scalar_rgb) gives: f cos and density of pairs of directions, and samples.
 #include "read/nori/parsers.h"
+#include "support/kernel_checks.h"
 #include "support/probe.h"
+#include "support/seeds.h"
 
 #include <catch2/catch.hpp>
 
@@ -66,6 +68,11 @@ TEST_CASE("f cos and densities of diffuse, twosided and mask are Mitsuba's", "[m
                                                .margin(1e-9));
         }
     }
+}
+
+TEST_CASE("f cos and densities of principled and principledthin are Mitsuba's, those of oren_nayar its paper's",
+          "[mitsuba_bsdfs][stat]") {
+    require_all_pass(check_principled(Sources::embedded(), test_seed(127)));
 }
 
 TEST_CASE("Samples of dielectric, mask and null are Mitsuba's", "[mitsuba_bsdfs]") {

@@ -43,7 +43,7 @@ TEST_CASE("Single precision keeps what is promised at the ends of each range", "
     if (!doubles())
         return;
     for (const char *name : {"scale", "distance", "light-size", "sphere-scale", "sphere-distance", "sphere-furnace",
-                             "sphere-light", "alpha", "phong", "edges", "numbers", "samplers", "depth", "height"})
+                             "sphere-light", "alpha", "principled", "phong", "edges", "numbers", "samplers", "depth", "height"})
         require_kept(run_stress(row(name), device(), small(), 100));
 }
 

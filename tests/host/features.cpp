@@ -54,6 +54,29 @@ TEST_CASE("a BSDF comes with those that it leads to, each record once", "[featur
     CHECK(outer.traits() == OPAL_SMOOTH);
 }
 
+TEST_CASE("numbers that are 0 in all principled materials are 0 in the kernel", "[features]") {
+    SceneDescription description = scene_of({diffuse(one_triangle), diffuse(one_triangle), diffuse(one_triangle)});
+    description.meshes[0].bsdf = bsdf_principled_record{.metallic = 1};
+    description.meshes[1].bsdf = bsdf_principled_record{.roughness = 0, .sheen = 0.5};
+    const FlatScene scene = flatten(description, 8);
+    uint expected = 0, place = 1;
+    for (const Parameter &parameter : bsdf_parameters(BSDF_principled)) {
+        if (std::set<std::string>{"roughness", "metallic", "sheen", "eta"}.contains(parameter.name))
+            expected |= place;
+        place *= 2;
+    }
+    CHECK(scene.features.nonzero[BSDF_principled] == expected);
+    CHECK(scene.features.nonzero[BSDF_diffuse] == ~0u); // which asks no such thing
+    CHECK_FALSE(scene.features[FEATURE_tangents]);
+    description.meshes[1].bsdf = bsdf_principled_record{.anisotropic = 0.1};
+    CHECK(flatten(description, 8).features[FEATURE_tangents]);
+    description.strategy.specialise = Specialise::off;
+    CHECK(flatten(description, 8).features.nonzero[BSDF_principled] == ~0u);
+    CHECK(flatten(description, 8).features[FEATURE_bsdf_principled]);
+    description.meshes = {description.meshes[2]};
+    CHECK_FALSE(flatten(description, 8).features[FEATURE_bsdf_principled]);
+}
+
 TEST_CASE("features are what the scene and the strategy ask for, each with a reason", "[features]") {
     SceneDescription description = scene_of({diffuse(one_triangle), light(one_triangle, {1, 1, 1})});
     description.meshes[0].bsdf = bsdf_mirror_record{};
@@ -154,6 +177,9 @@ TEST_CASE("features are what the scene and the strategy ask for, each with a rea
                                                FEATURE_light_textures,
                                                FEATURE_emitter_projector,
                                                FEATURE_emitter_envmap,
+                                               FEATURE_bsdf_principled,
+                                               FEATURE_bsdf_principledthin,
+                                               FEATURE_bsdf_oren_nayar,
                                                FEATURE_bsdf_conductor,
                                                FEATURE_bsdf_roughconductor,
                                                FEATURE_bsdf_thindielectric,

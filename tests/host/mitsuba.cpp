@@ -565,6 +565,26 @@ TEST_CASE_METHOD(MitsubaFixture, "materials", "[mitsuba]") {
     CHECK(bsdf("mask", inner + "<float name='opacity' value='0.2'/>").as<bsdf_mask_record>().opacity.value == 0.2f);
 }
 
+TEST_CASE_METHOD(MitsubaFixture, "Disney's materials have Mitsuba's names", "[mitsuba]") {
+    const Bsdf plain = bsdf("principled");
+    CHECK(plain.words == words_of(bsdf_principled_record{}));
+    CHECK(bsdf("principledthin").words == words_of(bsdf_principledthin_record{}));
+    const Bsdf metal = bsdf("principled", "<rgb name='base_color' value='0.1, 0.2, 0.3'/>"
+                                          "<texture type='checkerboard' name='roughness'/>"
+                                          "<float name='metallic' value='0.5'/><float name='specular' value='0.8'/>"
+                                          "<float name='clearcoat_sampling_rate' value='2'/>");
+    const auto record = metal.as<bsdf_principled_record>();
+    CHECK(record.base_color.value[2] == 0.3f);
+    CHECK(record.roughness.value == 1);
+    CHECK(metal.textures.size() == 1);
+    CHECK(record.metallic.value == 0.5f);
+    CHECK(record.eta.value == Approx(1.677315));
+    const Bsdf thin = bsdf("principledthin", "<float name='diff_trans' value='1.5'/><float name='eta' value='1.3'/>");
+    CHECK(thin.as<bsdf_principledthin_record>().diff_trans.value == 1.5f);
+    CHECK(thin.as<bsdf_principledthin_record>().eta.value == 1.3f);
+    CHECK(bsdf("twosided", "<bsdf type='principled'/>").is<bsdf_twosided_record>());
+}
+
 TEST_CASE_METHOD(MitsubaFixture, "one material serves all that refer to it", "[mitsuba]") {
     const SceneDescription scene = load("<shape type='sphere'><ref id='red'/></shape>"
                                         "<bsdf type='diffuse' id='red'><rgb name='reflectance' value='0.5 0 0'/></bsdf>"
@@ -641,6 +661,11 @@ TEST_CASE_METHOD(MitsubaFixture, "what Opal cannot render is an error with its p
         {in_bsdf("twosided", "<bsdf type='null'/>"), ":3:1: a twosided cannot hold a BSDF that light passes"},
         {in_bsdf("twosided", "<bsdf type='mask'><bsdf type='diffuse'/></bsdf>"), ":3:1: a twosided cannot hold a BSDF"},
         {in_bsdf("twosided", ""), ":2:22: a twosided has 1 or 2 <bsdf> within it, not 0"},
+        {in_bsdf("principled", "<float name='eta' value='1.4'/><float name='specular' value='0.5'/>"),
+         ":3:32: property 'specular': stands for eta, which is given too"},
+        {in_bsdf("twosided", "<bsdf type='principled'><float name='spec_trans' value='0.5'/></bsdf>"),
+         ":3:1: a twosided cannot hold a BSDF"},
+        {in_bsdf("twosided", "<bsdf type='principledthin'/>"), ":3:1: a twosided cannot hold a BSDF"},
         {in_bsdf("mask", ""), ":2:22: a mask has 1 <bsdf> within it, not 0"},
         {in_bsdf("mask", "<bsdf type='diffuse'/><bsdf type='diffuse'/>"),
          ":2:22: a mask has 1 <bsdf> within it, not 2"},
@@ -728,7 +753,7 @@ TEST_CASE_METHOD(MitsubaFixture, "plug-ins that Opal does not have are all named
         ":3:24: unknown bsdf type 'plastic' (2 in the scene); available: diffuse, dielectric, thindielectric, "
         "roughdielectric, conductor, roughconductor, twosided, "
         "mask, "
-        "null\n"
+        "null, principled, principledthin\n"
         ":5:1: unknown emitter type 'sunsky'; available: area, point, spot, directional, projector, constant, envmap\n"
         ":6:1: unknown medium type 'homogeneous'; available: none\n"
         ":7:43: unknown texture type 'volume'; available: checkerboard, bitmap, mesh_attribute\n"

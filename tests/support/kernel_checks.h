@@ -22,6 +22,7 @@ Findings check_watertight(const Sources &sources, unsigned seed); // rays at edg
 Findings check_warps(const Sources &sources, unsigned seed);         // warp_findings of selftest's warps and two more
 Findings check_bsdfs(const Sources &sources, unsigned seed);         // check_materials of tests/cases/bsdfs
 Findings check_facets(const Sources &sources, unsigned seed);        // densities of normals against integrals
+Findings check_principled(const Sources &sources, unsigned seed);    // and oren_nayar: f and densities, albedos
 Findings check_albedos(const Sources &sources, unsigned seed);       // microfacet against quadrature
 Findings check_refraction(const Sources &sources, unsigned seed);    // Snell's law and Fresnel's formulas in double
 Findings check_metals(const Sources &sources, unsigned);             // smooth metals and panes against Mitsuba

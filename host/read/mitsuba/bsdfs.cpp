@@ -179,6 +179,38 @@ Bsdf parse_mask(Importer &importer, Object &object) {
     return bsdf;
 }
 
+// The parameters of Disney's materials bear Mitsuba's names.
+void set_parameters(Importer &importer, Object &object, Bsdf &bsdf, const std::string &but) {
+    for (const Parameter &parameter : bsdf_parameters(bsdf.kind()))
+        if (parameter.name != but)
+            set_parameter(importer, object, parameter.name, bsdf, parameter.name);
+}
+
+Bsdf parse_principled(Importer &importer, Object &object) {
+    Bsdf bsdf = bsdf_principled_record{};
+    set_parameters(importer, object, bsdf, "eta");
+    const auto eta = object.number("eta"), specular = object.number("specular");
+    object.check(!eta || *eta > 0, "eta", "must be above 0");
+    object.check(!specular || BETWEEN(0, 1).holds(*specular), "specular", "must be " + text_of(BETWEEN(0, 1)));
+    object.check(!eta || !specular, "specular", "stands for eta, which is given too");
+    auto record = bsdf.as<bsdf_principled_record>();
+    record.eta = principled_index(eta, specular, record.spec_trans.value > 0);
+    bsdf.words = words_of(record);
+    for (const char *name : {"main_specular_sampling_rate", "clearcoat_sampling_rate",
+                             "diffuse_reflectance_sampling_rate"}) // noise alone depends on them
+        object.ignore(name);
+    return bsdf;
+}
+
+Bsdf parse_principledthin(Importer &importer, Object &object) {
+    Bsdf bsdf = bsdf_principledthin_record{};
+    set_parameters(importer, object, bsdf, "");
+    for (const char *name : {"specular_reflectance_sampling_rate", "specular_transmittance_sampling_rate",
+                             "diffuse_transmittance_sampling_rate", "diffuse_reflectance_sampling_rate"})
+        object.ignore(name);
+    return bsdf;
+}
+
 Bsdf parse_null(Importer &, Object &) { return bsdf_null_record{}; }
 
 const std::vector<Plugin<Bsdf (*)(Importer &, Object &)>> bsdf_types = {
@@ -191,6 +223,8 @@ const std::vector<Plugin<Bsdf (*)(Importer &, Object &)>> bsdf_types = {
     {"twosided", "twosided", parse_twosided},
     {"mask", "mask", parse_mask},
     {"null", "null", parse_null},
+    {"principled", "principled", parse_principled},
+    {"principledthin", "principledthin", parse_principledthin},
 };
 
 } // namespace

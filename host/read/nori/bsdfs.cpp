@@ -71,8 +71,10 @@ struct BsdfType {
     std::vector<uint> words; // its record with all defaults
 };
 
+// disney, orenNayar: public forks.
 #define OPAL_BSDF_TYPE(name, traits) {#name, words_of(bsdf_##name##_record{})},
-const std::vector<BsdfType> bsdf_types = {OPAL_ALL_BSDFS(OPAL_BSDF_TYPE)};
+const std::vector<BsdfType> bsdf_types = {OPAL_ALL_BSDFS(OPAL_BSDF_TYPE){"disney", words_of(bsdf_principled_record{})},
+                                          {"orenNayar", words_of(bsdf_oren_nayar_record{})}};
 
 // Sets the words of a parameter that the object has. A BSDF is no property: add_children reads it.
 void read_parameter(Properties &properties, const Parameter &parameter, std::span<uint> words) {
@@ -97,6 +99,17 @@ void read_parameter(Properties &properties, const Parameter &parameter, std::spa
             words[parameter.word] = *flag;
         break;
     }
+}
+
+// principled: `specular` stands for eta.
+void read_specular(Properties &properties, Bsdf &bsdf) {
+    auto record = bsdf.as<bsdf_principled_record>();
+    const auto specular = properties.number("specular");
+    properties.check(!specular || !properties.has("eta"), "specular", "stands for eta, which is given too");
+    properties.check(!specular || BETWEEN(0, 1).holds(*specular), "specular", "must be " + text_of(BETWEEN(0, 1)));
+    const auto eta = properties.has("eta") ? std::optional<double>(record.eta.value) : std::nullopt;
+    record.eta = principled_index(eta, specular, record.spec_trans.value > 0);
+    bsdf.words = words_of(record);
 }
 
 // Reads the BSDFs within a BSDF, as many as it has parameters of that type.
@@ -131,6 +144,8 @@ Bsdf parse_bsdf(const XmlNode &node, const ParseContext &context) {
     bsdf.words = type->words;
     for (const Parameter &parameter : bsdf_parameters(bsdf.kind()))
         read_parameter(properties, parameter, bsdf.words);
+    if (bsdf.is<bsdf_principled_record>())
+        read_specular(properties, bsdf);
     read_metal(properties, bsdf);
     read_facets(properties, bsdf);
     properties.check(!has_equal_indices(bsdf), "intIOR", "must differ from extIOR");
