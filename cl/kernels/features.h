@@ -27,8 +27,6 @@
     OPAL_FEATURE_ROW(ggx, "ggx") \
     /* some rough surface draws directions by all facets, else all by the visible ones */ \
     OPAL_FEATURE_ROW(all_facets, "all_facets") \
-    /* some rough surface is rougher along u than along v, or less: frames follow the texture coordinates */ \
-    OPAL_FEATURE_ROW(anisotropic, "anisotropic") \
     /* some glass has a specular_reflectance or specular_transmittance other than 1 */ \
     OPAL_FEATURE_ROW(tinted_glass, "tinted_glass") \
     /* several emitters, one of which is chosen; else emitter 0 is meant */ \

@@ -79,10 +79,6 @@ public:
     Decision ggx() const { return with_flag("ggx", 1); }
     Decision all_facets() const { return with_flag("sample_visible", 0); }
 
-    Decision anisotropic() const {
-        return bsdfs([&](uint at) { return is_anisotropic(bsdf_words(at)); });
-    }
-
     Decision tinted_glass() const {
         return bsdfs([&](uint at) {
             const uint kind = scene.bsdfs[at];
@@ -319,7 +315,6 @@ bool has_general_kernel(unsigned feature) {
     case FEATURE_beckmann:
     case FEATURE_ggx:
     case FEATURE_all_facets:
-    case FEATURE_anisotropic:
     case FEATURE_tinted_glass:
     case FEATURE_endless_paths:
     case FEATURE_hidden_emitters:

