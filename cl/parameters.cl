@@ -50,13 +50,15 @@ static v2 number_gradient(const Scene *scene, global const NumberParameter *para
 #define PARAMETER_PLACE(type, name, xml, initial, range, meaning) PLACE_##name,
 
 // Statements that read a list of parameters into the members of `lanes`, from `record` at `at`. `textured`, a constant,
-// has the bits of the parameters that have a texture in the kernel's scene.
+// has the bits of the parameters that have a texture in the kernel's scene, and `nonzero` lacks those of numbers that
+// are 0 in all of its materials.
 #define READ_PARAMETER(type, name, xml, initial, range, meaning) READ_##type(name)
 #define READ_COLOR(name) \
     if (textured >> PLACE_##name & 1) lanes.name = textured_color(scene, &record->name, at, point, active); \
     else lanes.name = color_parameter(&record->name, at);
 #define READ_NUMBER(name) \
-    if (textured >> PLACE_##name & 1) lanes.name = textured_number(scene, &record->name, at, point, active); \
+    if (!(nonzero >> PLACE_##name & 1)) lanes.name = 0; \
+    else if (textured >> PLACE_##name & 1) lanes.name = textured_number(scene, &record->name, at, point, active); \
     else lanes.name = number_parameter(&record->name, at);
 #define READ_FLAG(name) lanes.name = flag_parameter(&record->name, at);
 #define READ_BSDF(name) lanes.name = bsdf_parameter(&record->name, at);

@@ -66,7 +66,7 @@ static Frame tangent_frame(v3 n, v3 dpdu) {
 // Sets what follows from the shading normal and the mesh: frame, wi, BSDF and emitter. ray.d is unit but for rounding,
 // which would add up in glass and mirrors: one Newton step towards 1 / sqrt(d.d) removes it from wi.
 static void finish_surface(const Scene *scene, Ray ray, v3 shading_normal, uints mesh, Surface *s) {
-    s->frame = frame_of(shading_normal);
+    s->frame = OPAL_HAS_tangents ? tangent_frame(shading_normal, s->dpdu) : frame_of(shading_normal);
     s->wi = to_local(s->frame, v3_scale(ray.d, R(-1.5) + R(0.5) * v3_dot(ray.d, ray.d)));
     s->bsdf = GATHER(uints, scene->meshes, mesh, .bsdf);
     s->emitter = GATHER(uints, scene->meshes, mesh, .emitter);

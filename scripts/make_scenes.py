@@ -9,7 +9,8 @@ import argparse
 import pathlib
 import sys
 
-from scenekit import cornell_box, displaced_sphere, eta_study, fence, images, lights, materials, mitsuba, write
+from scenekit import (cornell_box, displaced_sphere, eta_study, fence, images, lights, materials, mitsuba, textured,
+                      write)
 
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 
@@ -22,7 +23,7 @@ def all_files():
             files[SCENES / "meshes" / f"{name}.obj"] = write.obj_text(surface, comment)
         for scene in module.scenes():
             files[SCENES / f"{scene.name}.xml"] = scene.text()
-    for module in (mitsuba, fence):
+    for module in (mitsuba, fence, textured):
         for name, data in module.files().items():
             files[SCENES / name] = data
     return files

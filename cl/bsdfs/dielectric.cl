@@ -8,6 +8,12 @@
 #include "core/math.cl"
 #include "core/rng.cl"
 
+// A weight times the glass's colour for what it reflects or lets through. 1 in kernels without tinted glass.
+static v3 glass_weight(mask reflects, real weight, v3 reflectance, v3 transmittance) {
+    if (!OPAL_HAS_tinted_glass) return v3_all(weight);
+    return v3_scale(v3_pick(reflects, reflectance, transmittance), weight);
+}
+
 static v3 dielectric_eval(dielectric_bsdf b, v3 wi, v3 wo) { return v3_all((real)(0)); }
 
 static real dielectric_pdf(dielectric_bsdf b, v3 wi, v3 wo) { return (real)(0); }
@@ -23,6 +29,8 @@ static BsdfSample dielectric_sample(dielectric_bsdf b, v3 wi, v2 u, real lobe) {
     v3 refracted = v3_of(-wi.x * boundary.inverse_eta, -wi.y * boundary.inverse_eta,
                          outside ? -far_cosine : far_cosine);
     real weight = (reflects ? fresnel : 1 - fresnel) / reflection.probability;
-    return bsdf_sample_of(v3_pick(reflects, reflect_z(wi), refracted), v3_all(wi.z != 0 ? weight : (real)(0)),
-                          (real)(0), reflects ? (real)(1) : boundary.eta, ALL_LANES);
+    v3 colored = glass_weight(reflects, wi.z != 0 ? weight : (real)(0), b.specular_reflectance,
+                              b.specular_transmittance);
+    return bsdf_sample_of(v3_pick(reflects, reflect_z(wi), refracted), colored, (real)(0),
+                          reflects ? (real)(1) : boundary.eta, ALL_LANES);
 }

@@ -8,6 +8,8 @@
     PARAMETER(NUMBER, int_ior, "intIOR", 1.5046, ABOVE(0), \
               "index of refraction on the side the normal points away from (BK7 glass)") \
     PARAMETER(NUMBER, ext_ior, "extIOR", 1.000277, ABOVE(0), \
-              "index of refraction on the side the normal points to (air)")
+              "index of refraction on the side the normal points to (air)") \
+    PARAMETER(COLOR, specular_reflectance, "specular_reflectance", 1, BETWEEN(0, 1), "factor of what is reflected") \
+    PARAMETER(COLOR, specular_transmittance, "specular_transmittance", 1, BETWEEN(0, 1), "factor of what passes")
 
 #endif

@@ -14,7 +14,9 @@
 #define COUNT_TRANSMITTING(name, traits) +(OPAL_HAS_bsdf_##name && ((traits) & OPAL_TRANSMITS) != 0)
 #define IS_DISCRETE(traits) (((traits) & OPAL_SMOOTH) == 0)
 #define COUNT_DISCRETE(name, traits) +(OPAL_HAS_bsdf_##name && IS_DISCRETE(traits))
-#define IS_LIT_FROM_BEHIND(traits) (((traits) & OPAL_SMOOTH) && ((traits) & OPAL_TRANSMITS))
+#define HAS_BOTH(traits, a, b) (((traits) & ((a) | (b))) == ((a) | (b)))
+#define COUNT_MIXED(name, traits) +(OPAL_HAS_bsdf_##name && HAS_BOTH(traits, OPAL_SMOOTH, OPAL_DISCRETE))
+#define IS_LIT_FROM_BEHIND(traits) HAS_BOTH(traits, OPAL_SMOOTH, OPAL_TRANSMITS)
 #define COUNT_BOTH_SIDES(name, traits) +(OPAL_HAS_bsdf_##name && IS_LIT_FROM_BEHIND(traits))
 enum { // of this kernel
     BSDF_KINDS = 0 OPAL_BSDFS(COUNT_BSDF),
@@ -23,7 +25,8 @@ enum { // of this kernel
     BOTH_SIDES_BSDF_KINDS = 0 OPAL_BSDFS(COUNT_BOTH_SIDES),
     NESTING_BSDF_KINDS = 0 OPAL_NESTING_BSDFS(COUNT_BSDF),
     // Whether a BSDF may have both a density and single directions.
-    MIXED_BSDFS = OPAL_HAS_mirror_coats + OPAL_HAS_bsdf_mask + OPAL_HAS_bsdf_blendbsdf * DISCRETE_BSDF_KINDS > 0
+    MIXED_BSDFS = OPAL_HAS_mirror_coats + OPAL_HAS_bsdf_mask + OPAL_HAS_bsdf_blendbsdf * DISCRETE_BSDF_KINDS
+                  OPAL_BSDFS(COUNT_MIXED) > 0
 };
 
 // The kind, where the kernel has several; else nobody asks.

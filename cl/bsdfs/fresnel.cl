@@ -1,4 +1,4 @@
-// fresnel: reflectance of a smooth boundary between dielectrics, for unpolarised light.
+// fresnel: reflectance of smooth boundaries between dielectrics, and of metals, for unpolarised light.
 #include "core/lanes.cl"
 #include "core/math.cl"
 
@@ -28,4 +28,26 @@ static real fresnel_dielectric(real cosine, real sin2, Boundary b) {
     real r_p = b.step * (square(cosine) - sin2_far) * square(s * inverse);
     real reflectance = R(0.5) * (r_s * r_s + r_p * r_p);
     return (sin2_far >= 1) ? (real)(1) : real_min(reflectance, (real)(1));
+}
+
+// Reflectance of a metal of index eta - i k (Born and Wolf, "Principles of Optics", 14.4.1, as in Lazanyi and
+// Szirmay-Kalos 2005, appendix), given cosine and sin^2 as above. With
+//   (a - i b)^2 = eta^2 - k^2 - sin^2 - 2 i eta k,
+// of a and b the larger one is found by a root and the other as eta k over it, so that neither cancels.
+static real fresnel_metal(real cosine, real sin2, real eta, real k) {
+    real cos2 = square(cosine);
+    real difference = (eta - k) * (eta + k) - sin2, product = eta * k;
+    real length = sqrt(square(difference) + 4 * square(product)); // a^2 + b^2
+    real larger = sqrt(R(0.5) * (length + fabs(difference)));
+    real smaller = product / (larger > 0 ? larger : (real)(1));
+    real twice_a_cosine = 2 * cosine * (difference >= 0 ? larger : smaller);
+    real s = length + cos2, p = mul_add(length, cos2, square(sin2));
+    real r_s = (s - twice_a_cosine) / (s + twice_a_cosine);
+    real r_p = r_s * (p - twice_a_cosine * sin2) / (p + twice_a_cosine * sin2);
+    return R(0.5) * (r_s + r_p);
+}
+
+static v3 fresnel_conductor(real cosine, real sin2, v3 eta, v3 k) {
+    return v3_of(fresnel_metal(cosine, sin2, eta.x, k.x), fresnel_metal(cosine, sin2, eta.y, k.y),
+                 fresnel_metal(cosine, sin2, eta.z, k.z));
 }

@@ -27,7 +27,8 @@
         OPAL_BSDF_##name(LANES_MEMBER) \
     } name##_bsdf; \
     static name##_bsdf name##_at(const Scene *scene, uints at, TexturePoint point, mask active) { \
-        enum { OPAL_BSDF_##name(PARAMETER_PLACE) textured = OPAL_TEXTURED_bsdf_##name }; \
+        enum { OPAL_BSDF_##name(PARAMETER_PLACE) textured = OPAL_TEXTURED_bsdf_##name, \
+               nonzero = OPAL_NONZERO_bsdf_##name }; \
         global const bsdf_##name##_record *record = (global const bsdf_##name##_record *)scene->bsdfs; \
         name##_bsdf lanes; \
         lanes.at = at; \

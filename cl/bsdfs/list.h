@@ -4,6 +4,7 @@
 
 #include "bsdfs/blendbsdf.h"
 #include "bsdfs/bumpmap.h"
+#include "bsdfs/conductor.h"
 #include "bsdfs/dielectric.h"
 #include "bsdfs/diffuse.h"
 #include "bsdfs/mask.h"
@@ -11,7 +12,13 @@
 #include "bsdfs/mirror.h"
 #include "bsdfs/normalmap.h"
 #include "bsdfs/null.h"
+#include "bsdfs/oren_nayar.h"
 #include "bsdfs/phong.h"
+#include "bsdfs/principled.h"
+#include "bsdfs/principledthin.h"
+#include "bsdfs/roughconductor.h"
+#include "bsdfs/roughdielectric.h"
+#include "bsdfs/thindielectric.h"
 #include "bsdfs/twosided.h"
 #include "shared/glue.h"
 #include "shared/parameters.h"
@@ -23,7 +30,8 @@ enum {
     OPAL_TRANSMITS = 4,    // light passes through the surface
     OPAL_HOLDS_OPAQUE = 8, // of a BSDF that leads to others: these must not have the trait OPAL_TRANSMITS
     OPAL_TANGENTS = 16,    // asks for dpdu and dpdv of Surface: the kernel gets the feature `tangents`
-    OPAL_PERTURBS = 32     // of a BSDF that leads to another: it asks that about another shading normal
+    OPAL_PERTURBS = 32,    // of a BSDF that leads to another: it asks that about another shading normal
+    OPAL_MANY_LOBES = 64   // a number that is 0 in all materials of a scene is 0 in its kernel (OPAL_NONZERO_bsdf_NAME)
 };
 
 // BSDF(name, traits)
@@ -33,7 +41,14 @@ enum {
     BSDF(dielectric, OPAL_DISCRETE | OPAL_TRANSMITS) \
     BSDF(microfacet, OPAL_SMOOTH) \
     BSDF(phong, OPAL_SMOOTH) \
-    BSDF(null, OPAL_DISCRETE | OPAL_TRANSMITS)
+    BSDF(null, OPAL_DISCRETE | OPAL_TRANSMITS) \
+    BSDF(conductor, OPAL_DISCRETE) \
+    BSDF(roughconductor, OPAL_SMOOTH) \
+    BSDF(thindielectric, OPAL_DISCRETE | OPAL_TRANSMITS) \
+    BSDF(roughdielectric, OPAL_SMOOTH | OPAL_TRANSMITS) \
+    BSDF(principled, OPAL_SMOOTH | OPAL_TRANSMITS | OPAL_TANGENTS | OPAL_MANY_LOBES) \
+    BSDF(principledthin, OPAL_SMOOTH | OPAL_TRANSMITS | OPAL_TANGENTS | OPAL_MANY_LOBES) \
+    BSDF(oren_nayar, OPAL_SMOOTH)
 
 // BSDFs that lead to others, which are their parameters of type BSDF: BSDF(name, traits of its own). The others' traits
 // come to them.

@@ -4,6 +4,7 @@
 //         in Heitz 2014, "Understanding the Masking-Shadowing Function", appendix A
 //   G1    of GGX Heitz 2014, eq. 72; of Beckmann the rational fit of Walter et al. 2007, section 5.2, as Mitsuba has it
 // Formulas are in slopes, x / z and y / z, and in homogeneous coordinates, so that nothing cancels at any roughness.
+#include "bsdfs/microfacet_distribution.h"
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "core/rng.cl"
@@ -14,6 +15,17 @@ typedef struct {
     mask ggx;              // the distribution is GGX, else Beckmann's
     mask visible;          // facet_sample draws of the facets that are visible, else of all
 } MicrofacetDistribution;
+
+// That of parameters (microfacet_distribution.h). A kernel whose materials all have the same distribution, or all draw
+// visible facets, has that way alone.
+static MicrofacetDistribution facets_of(real alpha_u, real alpha_v, mask ggx, mask visible) {
+    MicrofacetDistribution m = {real_max(alpha_u, (real)(LEAST_ALPHA)), real_max(alpha_v, (real)(LEAST_ALPHA)), ggx,
+                                visible};
+    if (!OPAL_HAS_beckmann) m.ggx = ALL_LANES;
+    if (!OPAL_HAS_ggx) m.ggx = NO_LANES;
+    if (!OPAL_HAS_all_facets) m.visible = ALL_LANES;
+    return m;
+}
 
 // D(h): the area of the facets around normal h per solid angle and area of the surface, 1/sr.
 static real facet_density(MicrofacetDistribution m, v3 h) {

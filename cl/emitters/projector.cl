@@ -21,7 +21,7 @@ static LightSample emitter_projector_sample(const Scene *scene, uints id, v3 col
     real cosine = -v3_dot(d, axis);
     v2 uv = plane_uv(v3_neg(d), axis, GATHER_V3(scene->emitters, id, .u.of_projector.across[0]),
                      GATHER_V3(scene->emitters, id, .u.of_projector.across[1]));
-    mask lit = cosine > 0 & uv.x >= 0 & uv.x <= 1 & uv.y >= 0 & uv.y <= 1;
+    mask lit = (cosine > 0) & (uv.x >= 0) & (uv.x <= 1) & (uv.y >= 0) & (uv.y <= 1);
     color = textured_light(scene, id, EMITTER_projector, color, texture_point_at(uv));
     real falloff = lit ? 1 / (cosine * cosine * cosine) : (real)(0);
     return light_sample_of(d, distance2 * inverse_distance, v3_scale(color, falloff * square(inverse_distance)),

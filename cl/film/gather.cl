@@ -7,11 +7,15 @@
 #include "core/math.cl"
 #include "core/rng.cl"
 #include "film/filter.cl"
-#include "film/samples.cl"
 #include "film/sums.cl"
 #include "scene.cl"
 #include "shared/film.h"
 #include "shared/types.h"
+#if LANES == 1
+#include "film/one_lane/samples.cl"
+#else
+#include "film/many_lanes/samples.cl"
+#endif
 
 // The colour of sample s of each lane's pixel.
 static v3 sample_color(global const float *samples, uints pixel, uint s, uint pass_samples) {

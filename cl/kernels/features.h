@@ -22,6 +22,13 @@
     OPAL_CAMERAS(OPAL_CAMERA_FEATURE) \
     /* some microfacet coat has alpha 0: its BSDF has a density and single directions */ \
     OPAL_FEATURE_ROW(mirror_coats, "mirror_coats") \
+    /* some rough surface has facets of Beckmann's distribution, or of GGX */ \
+    OPAL_FEATURE_ROW(beckmann, "beckmann") \
+    OPAL_FEATURE_ROW(ggx, "ggx") \
+    /* some rough surface draws directions by all facets, else all by the visible ones */ \
+    OPAL_FEATURE_ROW(all_facets, "all_facets") \
+    /* some glass has a specular_reflectance or specular_transmittance other than 1 */ \
+    OPAL_FEATURE_ROW(tinted_glass, "tinted_glass") \
     /* several emitters, one of which is chosen; else emitter 0 is meant */ \
     OPAL_FEATURE_ROW(many_emitters, "many_emitters") \
     /* some mesh emits on both sides */ \

@@ -1,10 +1,12 @@
 // film: the kernels of the film. They are a program of their own, whose text is the same for all scenes.
 #include "film/gather.cl"
-#include "film/samples.cl"
 #include "kernels/queue.cl"
 #include "shared/film.h"
 #include "shared/types.h"
-#if LANES > 1
+#if LANES == 1
+#include "film/one_lane/samples.cl"
+#else
+#include "film/many_lanes/samples.cl"
 #include "film/many_lanes/strips.cl"
 #endif
 

@@ -1,12 +1,16 @@
 // retire: finished paths leave their samples in the memory of the pass.
 #include "core/lanes.cl"
-#include "film/samples.cl"
 #include "integrators/steps.cl"
 #include "kernels/queue.cl"
 #include "scene.cl"
 #include "shared/counters.h"
 #include "shared/film.h"
 #include "shared/types.h"
+#if LANES == 1
+#include "film/one_lane/samples.cl"
+#else
+#include "film/many_lanes/samples.cl"
+#endif
 
 // The film's pixel of the image's pixel y * width + x. The film holds a window of the image, and random numbers are
 // drawn by the pixel of the image, so that a crop shows what the whole image shows there.

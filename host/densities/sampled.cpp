@@ -59,6 +59,29 @@ double lobe_width(KernelProbe &probe, unsigned id, Vec3 wi) {
     return *fiftieth;
 }
 
+// Adds the lobe of what passes to the other side, if there is one: about the mean direction, as wide as the fiftieth of
+// the samples that lies closest to it.
+void add_passing_peak(Sampled &sampled, KernelProbe &probe, unsigned id, Vec3 wi) {
+    const Planes drawn = probe.bsdf_sample(id, wi, probe.numbers(4096, {}));
+    std::vector<Vec3> passing;
+    Vec3 sum{};
+    for (size_t i = 0; i < drawn.count; i++)
+        if (const Vec3 wo = drawn.vec3(BSDF_WO_X, i);
+            wo.z * wi.z < 0 && !is_black(drawn.vec3(BSDF_WEIGHT_R, i)) && drawn.at(BSDF_DISCRETE, i) == 0) {
+            passing.push_back(wo);
+            sum = sum + wo;
+        }
+    if (passing.size() < 100)
+        return;
+    const Vec3 middle = normalize(sum);
+    std::vector<double> angles;
+    for (Vec3 wo : passing)
+        angles.push_back(2 * std::asin(std::min(1.0, length(wo - middle) / 2)));
+    const auto fiftieth = angles.begin() + std::ptrdiff_t(angles.size() / 50);
+    std::nth_element(angles.begin(), fiftieth, angles.end());
+    add_peak(sampled, middle, *fiftieth);
+}
+
 } // namespace
 
 const char *warp_name(int warp) { return warps[warp].name; }
@@ -113,6 +136,8 @@ Sampled sampled_bsdf(KernelProbe &probe, unsigned id, Vec3 wi) {
     sampled.splits_u = {0};
     sampled.relative_error = 1e-4; // directions in single precision leave a narrow lobe no more
     add_peak(sampled, {-wi.x, -wi.y, wi.z}, lobe_width(probe, id, wi));
+    if (traits & OPAL_TRANSMITS)
+        add_passing_peak(sampled, probe, id, wi);
     if (wi.z < 0.2) { // where densities over half vectors, 1 / h.wo, are steep
         const std::vector<double> grazing = stats::splits_about(wi.z, wi.z / 2, -1, 1);
         sampled.splits_u.insert(sampled.splits_u.end(), grazing.begin(), grazing.end());

@@ -143,7 +143,8 @@ std::string program_text(const Features &features, const BuildOptions &options, 
     OPAL_FEATURES
 #undef OPAL_FEATURE_ROW
 #define OPAL_TEXTURED_ROW(name, traits)                                                                                \
-    text += fmt::format("#define OPAL_TEXTURED_bsdf_" #name " {}\n", features.textured[BSDF_##name]);
+    text += fmt::format("#define OPAL_TEXTURED_bsdf_" #name " {}\n", features.textured[BSDF_##name]);                  \
+    text += fmt::format("#define OPAL_NONZERO_bsdf_" #name " {}\n", features.nonzero[BSDF_##name]);
     OPAL_ALL_BSDFS(OPAL_TEXTURED_ROW)
 #undef OPAL_TEXTURED_ROW
     text += fmt::format("#define OPAL_PERTURBATIONS {}\n", features.perturbations);

@@ -120,14 +120,29 @@ SceneDescription rough_floor(double alpha) { return floor_under(lamp_over({0, 0.
 SceneDescription grazed_floor(double degrees) {
     return floor_under(lamp_over({0, 0.6, 0.5}, 0.5, 4), microfacet(0.1), std::tan(degrees * (std::numbers::pi / 180)));
 }
+SceneDescription metal_floor(double alpha) {
+    return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4),
+                       bsdf_roughconductor_record{.eta = 0.2, .k = 3.9, .alpha_u = alpha, .alpha_v = alpha, .ggx = 1});
+}
+SceneDescription principled_floor(double roughness) {
+    return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4), principled(roughness));
+}
 SceneDescription phong_floor(double exponent) { return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4), phong(exponent)); }
 
-SceneDescription glass_cube(double ior) {
+// A cube in a bright room.
+SceneDescription cube_of(const Bsdf &glass) {
     SceneDescription scene =
-        path_traced({light(cube({}, 1, true), 1), made_of(cube({0.05, -0.1, 0.1}, 0.4, false), dielectric(ior)),
+        path_traced({light(cube({}, 1, true), 1), made_of(cube({0.05, -0.1, 0.1}, 0.4, false), glass),
                      made_of(quad({-0.9, -0.8, -0.9}, {0, 0, 1.8}, {1.8, 0, 0}), diffuse(0.5))},
                     camera({0.2, 0.45, -0.95}, {0, -0.1, 0.1}, 60), 12);
     return moved(scene, 1, {});
+}
+SceneDescription glass_cube(double ior) { return cube_of(dielectric(ior)); }
+SceneDescription rough_glass_cube(double alpha) {
+    return cube_of(bsdf_roughdielectric_record{.ext_ior = 1, .alpha_u = alpha, .alpha_v = alpha});
+}
+SceneDescription rough_cube_of_index(double ior) {
+    return cube_of(bsdf_roughdielectric_record{.int_ior = ior, .ext_ior = 1, .ggx = 1});
 }
 
 // A furnace of albedo 1 - darkness and radiance 1. Without roulette each sample is the sum of the geometric series.
@@ -447,11 +462,39 @@ const std::vector<StressRow> &stress_rows() {
          .promised_from = 1e-4,
          .promised_to = 1,
          .picture = rough_floor},
+        {.name = "metal-alpha",
+         .stretched = "roughness of a metal floor, GGX",
+         .values = reversed(decades(-6, 0)),
+         .start = 1,
+         .promised_from = 1e-6,
+         .promised_to = 1,
+         .picture = metal_floor},
+        {.name = "glass-alpha",
+         .stretched = "roughness of a cube of glass",
+         .values = reversed(decades(-6, 0)),
+         .start = 1,
+         .promised_from = 1e-6,
+         .promised_to = 1,
+         .picture = rough_glass_cube},
+        {.name = "rough-ior",
+         .stretched = "index of a cube of rough glass",
+         .values = {1 + 1e-6, 1 + 1e-3, 1.5, 2, 10, 100},
+         .start = 1.5,
+         .promised_from = 1 + 1e-6,
+         .promised_to = 100,
+         .picture = rough_cube_of_index},
         {.name = "grazing",
          .stretched = "angle of the view to a floor of roughness 0.1, degrees",
          .values = reversed(decades(-3, 1)),
          .start = 10,
          .picture = grazed_floor},
+        {.name = "principled",
+         .stretched = "roughness of a principled floor",
+         .values = joined({0}, decades(-4, 0)),
+         .start = 1,
+         .promised_from = 0,
+         .promised_to = 1,
+         .picture = principled_floor},
         {.name = "phong",
          .stretched = "exponent",
          .values = joined({0}, decades(0, 8)),

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace opal {
@@ -74,6 +75,36 @@ public:
         });
     }
 
+    Decision beckmann() const { return with_flag("ggx", 0); }
+    Decision ggx() const { return with_flag("ggx", 1); }
+    Decision all_facets() const { return with_flag("sample_visible", 0); }
+
+    Decision tinted_glass() const {
+        return bsdfs([&](uint at) {
+            const uint kind = scene.bsdfs[at];
+            if (!bsdf_parameter(kind, "specular_transmittance"))
+                return false;
+            const auto is_tinted = [&](const char *name) {
+                const Parameter &parameter = *bsdf_parameter(kind, name);
+                const auto is_one = [&](uint word) { return std::bit_cast<float>(word) == 1; };
+                return !std::all_of(&scene.bsdfs[at + parameter.word], &scene.bsdfs[at + parameter.word] + 3, is_one) ||
+                       scene.bsdfs[at + parameter.texture_word] != OPAL_UNTEXTURED;
+            };
+            return is_tinted("specular_reflectance") || is_tinted("specular_transmittance");
+        });
+    }
+
+    // The words of the table from a record on.
+    std::span<const uint> bsdf_words(uint at) const { return std::span(scene.bsdfs).subspan(at); }
+
+    // Meshes with a BSDF of facets whose flag is that.
+    Decision with_flag(const char *name, uint value) const {
+        return bsdfs([&](uint at) {
+            const Parameter *parameter = bsdf_parameter(scene.bsdfs[at], name);
+            return parameter && scene.bsdfs[at + parameter->word] == value;
+        });
+    }
+
     // Meshes that have such a BSDF; is_meant: of a record, by its first word.
     template <class Is> Decision bsdfs(Is is_meant) const {
         if (!integrator.has(OPAL_ASKS_BSDFS))
@@ -128,7 +159,9 @@ public:
     }
 
     Decision tangents() const {
-        return bsdfs([&](uint at) { return (bsdf_traits(scene.bsdfs[at]) & OPAL_TANGENTS) != 0; });
+        return bsdfs([&](uint at) {
+            return (traits_of_record(scene.bsdfs, at) & OPAL_TANGENTS) != 0 || is_anisotropic(bsdf_words(at));
+        });
     }
 
     Decision light_textures() const {
@@ -252,6 +285,24 @@ uint find_perturbations(const FlatScene &scene, uint at) {
     return within + ((bsdf_traits(scene.bsdfs[at]) & OPAL_PERTURBS) != 0);
 }
 
+// The numbers of each kind of BSDF that are not 0 on some mesh, of kinds of which kernels ask that; else all.
+std::array<uint, BSDF_COUNT> find_nonzero(const FlatScene &scene, bool specialise) {
+    std::array<uint, BSDF_COUNT> nonzero{};
+    for (uint kind = 0; kind < BSDF_COUNT; kind++)
+        nonzero[kind] = specialise && bsdf_traits(kind) & OPAL_MANY_LOBES ? 0 : ~0u;
+    for (const MeshRecord &mesh : scene.meshes)
+        visit_bsdfs(scene, mesh.bsdf, [&](uint at) {
+            uint place = 1;
+            for (const Parameter &parameter : bsdf_parameters(scene.bsdfs[at])) {
+                if (parameter.type == ParameterType::NUMBER &&
+                    std::bit_cast<float>(scene.bsdfs[at + parameter.word]) != 0)
+                    nonzero[scene.bsdfs[at]] |= place;
+                place *= 2;
+            }
+        });
+    return nonzero;
+}
+
 // Does a program for all scenes have the feature? Where no scene of that width has it, or where it costs most scenes
 // more than it saves a few, it has not: prefetching a tree that fits into the caches takes 5 to 10 % of its time.
 bool general_has(unsigned feature, int lanes) {
@@ -262,10 +313,32 @@ bool general_has(unsigned feature, int lanes) {
 
 // Features whose scenes have a general kernel of their own, which does not ask at run time.
 bool has_general_kernel(unsigned feature) {
-    return feature == FEATURE_endless_paths || feature == FEATURE_hidden_emitters || feature == FEATURE_uv ||
-           feature == FEATURE_tangents || feature == FEATURE_light_textures || feature == FEATURE_emitter_projector ||
-           feature == FEATURE_emitter_envmap || feature == FEATURE_bsdf_blendbsdf ||
-           feature == FEATURE_bsdf_normalmap || feature == FEATURE_bsdf_bumpmap;
+    switch (feature) {
+    case FEATURE_bsdf_conductor:
+    case FEATURE_bsdf_roughconductor:
+    case FEATURE_bsdf_thindielectric:
+    case FEATURE_bsdf_roughdielectric:
+    case FEATURE_bsdf_principled:
+    case FEATURE_bsdf_principledthin:
+    case FEATURE_bsdf_oren_nayar:
+    case FEATURE_beckmann:
+    case FEATURE_ggx:
+    case FEATURE_all_facets:
+    case FEATURE_tinted_glass:
+    case FEATURE_bsdf_blendbsdf:
+    case FEATURE_bsdf_normalmap:
+    case FEATURE_bsdf_bumpmap:
+    case FEATURE_endless_paths:
+    case FEATURE_hidden_emitters:
+    case FEATURE_uv:
+    case FEATURE_tangents:
+    case FEATURE_light_textures:
+    case FEATURE_emitter_projector:
+    case FEATURE_emitter_envmap:
+        return true;
+    default:
+        return false;
+    }
 }
 
 // Features of a second program for all scenes, which serves scenes that have one of these. Scenes of Nori's own kinds
@@ -328,6 +401,7 @@ Features find_features(const SceneDescription &description, const FlatScene &sce
     }
     features.loop = integrator_of(description.strategy).loop;
     features.textured = find_textured(scene, specialise);
+    features.nonzero = find_nonzero(scene, specialise);
     if (integrator_of(description.strategy).has(OPAL_ASKS_BSDFS))
         for (const MeshRecord &mesh : scene.meshes)
             features.perturbations = std::max(features.perturbations, find_perturbations(scene, mesh.bsdf));
@@ -340,8 +414,10 @@ Features shared_features(const std::vector<FlatScene> &scenes) {
         for (std::size_t i = 0; i < shared.list.size(); i++)
             if (scene.features.list[i].on && !shared.list[i].on)
                 shared.list[i] = scene.features.list[i];
-        for (std::size_t kind = 0; kind < shared.textured.size(); kind++)
+        for (std::size_t kind = 0; kind < shared.textured.size(); kind++) {
             shared.textured[kind] |= scene.features.textured[kind];
+            shared.nonzero[kind] |= scene.features.nonzero[kind];
+        }
         shared.perturbations = std::max(shared.perturbations, scene.features.perturbations);
         for (int axis = 0; axis < AXIS_COUNT; axis++)
             if (scene.features.axes[axis] != shared.axes[axis]) {

@@ -27,6 +27,7 @@ struct Features {
     std::array<Feature, FEATURE_COUNT> list; // by FEATURE_*
     std::array<uint, BSDF_COUNT> textured{}; // by BSDF_*: the parameters that have a texture, a bit each in their order
     uint perturbations = 0;                  // the most BSDFs of a nest that change the shading normal
+    std::array<uint, BSDF_COUNT> nonzero{};  // by BSDF_*: those that may be other than 0, of kinds of OPAL_MANY_LOBES
     std::string loop = "render";             // the kernel file that drives the integrator
     std::array<int, AXIS_COUNT> axes{};      // CHOICE_* or -1
     std::array<std::string, AXIS_COUNT> axis_reasons;

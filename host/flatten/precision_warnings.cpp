@@ -1,11 +1,14 @@
 #include "flatten/precision_warnings.h"
 
 #include "flatten/emitter_kinds.h"
+#include "scene/principled_albedo.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <map>
+#include <numbers>
 
 namespace opal {
 
@@ -115,10 +118,19 @@ private:
             return check(bsdf.as<bsdf_diffuse_record>(), place);
         case BSDF_dielectric:
             return check(bsdf.as<bsdf_dielectric_record>(), place);
+        case BSDF_thindielectric:
+            return check(bsdf.as<bsdf_thindielectric_record>(), place);
+        case BSDF_roughconductor:
+        case BSDF_roughdielectric:
+            return check_facets(bsdf, place);
         case BSDF_microfacet:
             return check(bsdf.as<bsdf_microfacet_record>(), place);
         case BSDF_phong:
             return check(bsdf.as<bsdf_phong_record>(), place);
+        case BSDF_principled:
+            return check_principled(bsdf, place);
+        case BSDF_principledthin:
+            return check(bsdf.as<bsdf_principledthin_record>(), place);
         }
     }
 
@@ -128,10 +140,19 @@ private:
                         albedo);
     }
 
-    void check(const bsdf_dielectric_record &dielectric, const SourcePlace &place) {
+    // A boundary between two media: a dielectric, or a thin one.
+    template <class Boundary> void check(const Boundary &dielectric, const SourcePlace &place) {
         if (dielectric.int_ior.value == dielectric.ext_ior.value)
             add_warning(place, "intIOR and extIOR are both {:g}: the surface cannot be seen, and costs a bounce",
                         dielectric.int_ior.value);
+    }
+
+    void check_facets(const Bsdf &bsdf, const SourcePlace &place) {
+        for (const char *name : {"alpha_u", "alpha_v"})
+            if (const float alpha = std::bit_cast<float>(bsdf.words[bsdf_parameter(bsdf.kind(), name)->word]);
+                alpha < LEAST_ALPHA)
+                add_warning(place, "{} {:g} is below {:g}, the least roughness that was tested: that stands in for it",
+                            name, alpha, LEAST_ALPHA);
     }
 
     void check(const bsdf_microfacet_record &microfacet, const SourcePlace &place) {
@@ -142,6 +163,51 @@ private:
                 place,
                 "alpha {:g} is below {:g}, the least that was tested: a mirror or dielectric is what it looks like",
                 microfacet.alpha.value, min_alpha);
+    }
+
+    // Of what adds to the light a texture counts as white; of metal and glass, which lose some, as black.
+    void check_principled(const Bsdf &bsdf, const SourcePlace &place) {
+        Bsdf brightest = bsdf;
+        for (const Parameter &parameter : bsdf_parameters(bsdf.kind()))
+            if ((parameter.name == "metallic" || parameter.name == "spec_trans") &&
+                bsdf.textures.contains(parameter.texture_word))
+                brightest.words[parameter.word] = 0; // the number 0
+        check_gain(place, brightest.as<bsdf_principled_record>());
+    }
+
+    // The base of a thin sheet reflects as that of principled does; what it transmits, and its facets, add at most the
+    // colour.
+    void check(const bsdf_principledthin_record &thin, const SourcePlace &place) {
+        const float share = (1 - thin.spec_trans.value) * (1 - thin.diff_trans.value / 2);
+        check_gain(place,
+                   {.base_color = thin.base_color,
+                    .roughness = thin.roughness,
+                    .eta = 1,
+                    .sheen = thin.sheen,
+                    .sheen_tint = thin.sheen_tint,
+                    .flatness = thin.flatness},
+                   share, (1 - share) * largest(thin.base_color));
+    }
+
+    void check_gain(const SourcePlace &place, const bsdf_principled_record &principled, double share = 1,
+                    double more = 0) {
+        constexpr int points = 48; // of a quadrature, for each lobe
+        double most = 0, at = 0;
+        for (double degrees : {0., 45., 70., 80., 85., 88.})
+            for (double azimuth : {0., 90.}) {
+                const double theta = degrees * std::numbers::pi / 180, phi = azimuth * std::numbers::pi / 180;
+                const Vec3 wi{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+                const Color albedo = principled_albedo(principled, wi, points);
+                if (const double sum = share * *std::ranges::max_element(albedo) + more; sum > most) {
+                    most = sum;
+                    at = degrees;
+                }
+            }
+        if (most > 1)
+            add_warning(place,
+                        "{:.2f} of the light that comes at {:g} degrees to the normal leaves, as in Mitsuba: the lobes "
+                        "are added without regard to each other, and paths among such surfaces may grow",
+                        most, at);
     }
 
     void check(const bsdf_phong_record &phong, const SourcePlace &place) {

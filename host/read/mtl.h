@@ -51,7 +51,8 @@ struct PrincipledMaterial {
     double opacity = 1;        // below 1: that share of the light meets the surface, the rest passes
     double transmission = 0;   // 1: glass
     double sheen = 0, coat = 0, anisotropic = 0;
-    Color emission{}; // radiance on both sides, W / (m^2 sr)
+    double coat_roughness = 0.03; // its alpha is the square
+    Color emission{};             // radiance on both sides, W / (m^2 sr)
 };
 PrincipledMaterial principled_of(const MtlMaterial &material);
 

@@ -74,7 +74,11 @@ void add_other_layers(const Statements &of, PrincipledMaterial &material) {
     if (of.has("tf") && (says_glass || of.has("pr"))) {
         material.transmission = grey_of(of.color("tf", 0));
         if (!of.has("pr") && material.phong_exponent == 0)
-            material.roughness = 0; // nothing says how rough the glass is
+            material.roughness = 0;                         // nothing says how rough the glass is
+        if (!of.has("pr") && material.transmission > 0.5) { // clear glass, whose Kd is often black
+            material.transmission = 1;
+            material.base = {1, 1, 1};
+        }
     }
     material.coat = of.number("pc", 0);
 }
@@ -125,32 +129,45 @@ Bsdf microfacet_of(const Color &base, double f0, double roughness) {
     return microfacet;
 }
 
-// A metal as Opal has it today: a mirror, or a Phong lobe of its colour as wide as microfacets of that roughness, and
-// for a share of metal the diffuse base beside it.
-Bsdf metal_of(const PrincipledMaterial &material, std::vector<std::string> &lacking) {
-    const bool is_white = !material.base_texture && *std::ranges::min_element(material.base) >= 1;
-    if (material.metallic >= 1 && material.roughness == 0 && is_white)
-        return bsdf_mirror_record{};
-    lacking.push_back("metal, which becomes a Phong lobe of its colour");
-    const double alpha = square(material.roughness);
-    const double exponent = alpha > 0 ? 2 / square(alpha) - 2 : max_exponent;
-    return phong_of(scaled(material.base, 1 - std::min(material.metallic, 1.0)),
-                    scaled(material.base, std::min(material.metallic, 1.0)), std::max(exponent, 0.0), lacking);
+// Disney's material: metal, rough glass, a coat or a sheen on a base.
+Bsdf disney_of(const PrincipledMaterial &material, std::vector<std::string> &lacking) {
+    constexpr double least_index = 1.001;   // at 1 facets reflect nothing, of metal neither
+    constexpr double strongest_coat = 0.25; // of Disney's clear coat
+    const double root = std::sqrt(std::min(material.f0, 0.99));
+    const double index = material.transmission > 0 ? material.ior : (1 + root) / (1 - root);
+    if (material.coat > strongest_coat)
+        lacking.push_back(fmt::format("coat {:g}, which becomes {:g}", material.coat, strongest_coat));
+    Color base = material.base;
+    for (double &channel : base)
+        channel = std::min(channel, 1.0);
+    bsdf_principled_record principled;
+    principled.base_color = parameter_of(base);
+    principled.roughness = material.roughness;
+    principled.anisotropic = std::clamp(material.anisotropic, 0.0, 1.0);
+    principled.metallic = std::min(material.metallic, 1.0);
+    principled.spec_trans = std::min(material.transmission, 1.0);
+    principled.eta = index == 1 ? least_index : index;
+    principled.sheen = std::min(material.sheen, 1.0);
+    principled.clearcoat = std::min(material.coat / strongest_coat, 1.0);
+    // Disney's gloss takes the coat's alpha from 0.1 to 0.001.
+    principled.clearcoat_gloss = std::clamp((0.1 - square(material.coat_roughness)) / (0.1 - 0.001), 0.0, 1.0);
+    return principled;
 }
 
 Bsdf bsdf_of(const PrincipledMaterial &material, std::vector<std::string> &lacking) {
-    if (material.transmission > 0.5) {
-        if (material.roughness > 0)
-            lacking.push_back(fmt::format("roughness {:g} of glass", material.roughness));
+    const bool is_white = !material.base_texture && *std::min_element(material.base.begin(), material.base.end()) >= 1;
+    if (material.transmission >= 1 && material.metallic == 0 && material.roughness == 0 && is_white) {
         bsdf_dielectric_record glass;
         glass.int_ior = material.ior;
         glass.ext_ior = 1;
         return glass;
     }
+    if (material.metallic >= 1 && material.roughness == 0 && is_white)
+        return twosided(bsdf_mirror_record{});
     if (material.transmission > 0)
-        lacking.push_back(fmt::format("transmission {:g}", material.transmission));
-    if (material.metallic > 0)
-        return twosided(metal_of(material, lacking));
+        return disney_of(material, lacking);
+    if (material.metallic > 0 || material.coat > 0 || material.sheen > 0)
+        return twosided(disney_of(material, lacking));
     if (largest_of(material.phong) > 0)
         return twosided(phong_of(material.base, material.phong, material.phong_exponent, lacking));
     if (material.f0 > 0 && (largest_of(material.base) < 1 || material.base_texture))
@@ -163,7 +180,8 @@ void add_base_texture(const PrincipledMaterial &material, Bsdf &bsdf, std::vecto
     Bsdf &base = bsdf.children.empty() ? bsdf : bsdf.children.front();
     bool is_used = false;
     for (const Parameter &parameter : bsdf_parameters(base.kind()))
-        if (parameter.name == "albedo" || parameter.name == "kd" || (parameter.name == "ks" && material.metallic > 0)) {
+        if (parameter.name == "albedo" || parameter.name == "kd" || parameter.name == "base_color" ||
+            (parameter.name == "ks" && material.metallic > 0)) {
             base.textures.emplace(parameter.texture_word, *material.base_texture);
             is_used = true;
         }
@@ -220,6 +238,7 @@ PrincipledMaterial principled_of(const MtlMaterial &written) {
     material.emission = of.color("ke", of.has_texture("map_ke") ? 1 : 0);
     material.sheen = of.number("ps", 0);
     material.anisotropic = of.number("aniso", 0);
+    material.coat_roughness = of.number("pcr", material.coat_roughness);
     if (written.by_blender)
         add_blender_layers(of, material);
     else
@@ -257,12 +276,8 @@ SurfaceOfMaterial surface_of(const MtlMaterial &written, const TextureReader &re
     set_place(surface.bsdf, written.place);
     if (largest_of(material.emission) > 0)
         surface.radiance = material.emission;
-    if (material.sheen > 0)
-        surface.lacking.push_back("sheen");
-    if (material.coat > 0)
-        surface.lacking.push_back(fmt::format("coat {:g}", material.coat));
-    if (material.anisotropic != 0)
-        surface.lacking.push_back("anisotropy");
+    if (material.anisotropic != 0 && material.metallic == 0 && material.transmission == 0)
+        surface.lacking.push_back("anisotropy of what is neither metal nor glass");
     for (const auto &[statement, texture] : written.textures)
         if (!textures.has_taken(statement))
             surface.lacking.push_back(fmt::format(

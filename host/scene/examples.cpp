@@ -25,6 +25,14 @@ Bsdf microfacet(double alpha, double kd) {
     return bsdf_microfacet_record{.alpha = alpha, .int_ior = 1.5, .ext_ior = 1, .kd = kd};
 }
 
+Bsdf principled(double roughness) {
+    return bsdf_principled_record{.base_color = 0.5,
+                                  .roughness = roughness,
+                                  .metallic = 0.5,
+                                  .spec_trans = 0.5,
+                                  .clearcoat = 1,
+                                  .clearcoat_gloss = 1};
+}
 Bsdf phong(double exponent, double reflectance) {
     return bsdf_phong_record{.kd = reflectance, .ks = reflectance, .n = exponent};
 }

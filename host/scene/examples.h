@@ -15,6 +15,7 @@ Bsdf diffuse(double albedo, bool use_cosine = true);
 Bsdf mirror();
 Bsdf dielectric(double int_ior = 1.5);
 Bsdf microfacet(double alpha, double kd = 0.3);        // index 1.5
+Bsdf principled(double roughness);                     // half metal, half glass, with a clear coat
 Bsdf phong(double exponent, double reflectance = 0.5); // kd = ks = reflectance; half of the samples are diffuse
 
 // A small sky with a sun, over dark ground.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 namespace opal {
 
@@ -17,6 +18,13 @@ std::span<const Medium> media() {
         {"pet", 1.575},       {"diamond", 2.419},
     };
     return table;
+}
+
+double principled_index(std::optional<double> eta, std::optional<double> specular, bool transmits) {
+    if (eta)
+        return transmits && *eta == 1 ? 1.001 : *eta;
+    const double level = specular.value_or(0.5);
+    return 2 / (1 - std::sqrt(0.08 * (transmits && level == 0 ? 1e-3 : level))) - 1;
 }
 
 std::optional<double> index_of_refraction(const std::string &name) {

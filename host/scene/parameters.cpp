@@ -43,6 +43,17 @@ std::span<const Parameter> bsdf_parameters(uint kind) {
     return tables[kind];
 }
 
+const Parameter *bsdf_parameter(uint kind, std::string_view name) {
+    const auto parameters = bsdf_parameters(kind);
+    const auto found = std::ranges::find(parameters, name, &Parameter::name);
+    return found == parameters.end() ? nullptr : &*found;
+}
+
+bool is_anisotropic(std::span<const uint> words) {
+    const Parameter *const u = bsdf_parameter(words[0], "alpha_u"), *const v = bsdf_parameter(words[0], "alpha_v");
+    return u && v && (words[u->word] != words[v->word] || words[u->texture_word] != words[v->texture_word]);
+}
+
 std::span<const Parameter> emitter_parameters(uint kind) {
 #define OPAL_VALUE_ROW(type, name, xml, initial, range, meaning)                                                       \
     {ParameterType::type, #name, xml, initial, range, meaning, 0, 0},

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace opal {
@@ -45,8 +46,9 @@ struct Parameter {
     size_t texture_word; // ... and that of its texture; 0: it cannot have one
 };
 
-std::span<const Parameter> bsdf_parameters(uint kind);    // kind: BSDF_*
-std::span<const Parameter> emitter_parameters(uint kind); // kind: EMITTER_*; none of emitters of meshes
+std::span<const Parameter> bsdf_parameters(uint kind);             // kind: BSDF_*
+const Parameter *bsdf_parameter(uint kind, std::string_view name); // that of the record's member `name`, or null
+std::span<const Parameter> emitter_parameters(uint kind);          // kind: EMITTER_*; none of emitters of meshes
 
 std::string text_of(const ValueRange &range);            // what a number may be: "0 or more", "above 0"
 std::string text_of(const Parameter &parameter);         // what it may be: "above 0", "true or false"
@@ -64,5 +66,8 @@ template <class Record> Record record_of(std::span<const uint> words, size_t at 
     std::copy_n(words.begin() + std::ptrdiff_t(at), own.size(), own.begin());
     return std::bit_cast<Record>(own);
 }
+
+// Whether a BSDF's record has another alpha_u than alpha_v, or another texture.
+bool is_anisotropic(std::span<const uint> words);
 
 } // namespace opal

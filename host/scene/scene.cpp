@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
 #include "base/error.h"
+#include "scene/parameters.h"
 
 #include <fmt/format.h>
 
@@ -31,8 +32,25 @@ unsigned bsdf_traits(unsigned kind) {
     return all[kind];
 }
 
+unsigned traits_of_record(std::span<const uint> words, size_t at) {
+    unsigned traits = bsdf_traits(words[at]);
+    const auto without = [&](const NumberParameter &number, unsigned trait) {
+        if (number.value == 0)
+            traits &= ~trait;
+    };
+    if (words[at] == BSDF_principled) {
+        const auto principled = record_of<bsdf_principled_record>(words, at);
+        without(principled.spec_trans, OPAL_TRANSMITS);
+        without(principled.anisotropic, OPAL_TANGENTS);
+    } else if (words[at] == BSDF_principledthin)
+        without(record_of<bsdf_principledthin_record>(words, at).anisotropic, OPAL_TANGENTS);
+    return traits;
+}
+
 unsigned Bsdf::traits() const {
-    unsigned traits = bsdf_traits(kind()) & ~OPAL_HOLDS_OPAQUE;
+    unsigned traits = traits_of_record(words, 0) & ~OPAL_HOLDS_OPAQUE;
+    if (is_anisotropic(words))
+        traits |= OPAL_TANGENTS;
     for (const Bsdf &child : children)
         traits |= child.traits();
     return traits;

@@ -330,6 +330,111 @@ SKY_MAP = """
 """
 
 
+PREVIEW = """
+    <default name="material" value="copper"/>
+
+    <integrator type="path">
+        <integer name="max_depth" value="16"/>
+    </integrator>
+
+    <sensor type="perspective">
+        <float name="fov" value="26"/>
+        <transform name="to_world">
+            <lookat origin="0, 2.3, 6.4" target="0, 0.98, 0" up="0, 1, 0"/>
+        </transform>
+        <film type="hdrfilm">
+            <integer name="width" value="384"/>
+            <integer name="height" value="384"/>
+        </film>
+        <sampler type="multijitter">
+            <integer name="sample_count" value="256"/>
+        </sampler>
+    </sensor>
+
+    <!-- The sky, and a window for highlights. -->
+    <emitter type="constant">
+        <rgb name="radiance" value="0.35, 0.42, 0.52"/>
+    </emitter>
+    <shape type="rectangle">
+        <transform name="to_world">
+            <scale x="1.3" y="1.3"/>
+            <lookat origin="-3.2, 4.6, 3.4" target="0, 1, 0" up="0, 1, 0"/>
+        </transform>
+        <emitter type="area">
+            <rgb name="radiance" value="14, 13, 11.5"/>
+        </emitter>
+    </shape>
+
+    <!-- The ground and the plinth. -->
+    <shape type="rectangle">
+        <transform name="to_world">
+            <scale value="14"/>
+            <rotate x="1" angle="-90"/>
+        </transform>
+        <bsdf type="diffuse">
+            <texture name="reflectance" type="checkerboard">
+                <rgb name="color0" value="0.32, 0.32, 0.33"/>
+                <rgb name="color1" value="0.2, 0.2, 0.21"/>
+                <transform name="to_uv">
+                    <scale x="20" y="20"/>
+                </transform>
+            </texture>
+        </bsdf>
+    </shape>
+    <shape type="cube">
+        <transform name="to_world">
+            <scale x="0.62" y="0.14" z="0.62"/>
+            <rotate y="1" angle="32"/>
+            <translate y="0.14"/>
+        </transform>
+        <bsdf type="diffuse">
+            <rgb name="reflectance" value="0.6, 0.58, 0.54"/>
+        </bsdf>
+    </shape>
+
+    <!-- The sphere, its axis upright. -->
+    <shape type="sphere">
+        <transform name="to_world">
+            <scale value="0.86"/>
+            <rotate x="1" angle="-90"/>
+            <translate y="1.14"/>
+        </transform>
+        <ref id="$material"/>
+    </shape>
+
+    <!-- The materials. -->
+    <bsdf type="diffuse" id="clay">
+        <rgb name="reflectance" value="0.58, 0.34, 0.22"/>
+    </bsdf>
+    <bsdf type="conductor" id="gold">
+        <string name="material" value="Au"/>
+    </bsdf>
+    <bsdf type="roughconductor" id="copper">
+        <string name="material" value="Cu"/>
+        <string name="distribution" value="ggx"/>
+        <float name="alpha" value="0.2"/>
+    </bsdf>
+    <bsdf type="roughconductor" id="brushed_aluminium">
+        <string name="material" value="Al"/>
+        <string name="distribution" value="ggx"/>
+        <float name="alpha_u" value="0.05"/>
+        <float name="alpha_v" value="0.35"/>
+    </bsdf>
+    <bsdf type="dielectric" id="glass"/>
+    <bsdf type="dielectric" id="tinted_glass">
+        <rgb name="specular_transmittance" value="0.5, 0.85, 0.7"/>
+    </bsdf>
+    <bsdf type="thindielectric" id="bubble"/>
+    <bsdf type="roughdielectric" id="frosted_glass">
+        <string name="distribution" value="ggx"/>
+        <float name="alpha" value="0.25"/>
+    </bsdf>
+    <bsdf type="roughdielectric" id="ground_glass">
+        <float name="alpha" value="0.5"/>
+    </bsdf>
+"""
+
+
 def scene_text(comment, body):
     return f'<?xml version="1.0"?>\n<!-- {comment}\n     {LICENCE} -->\n<scene version="3.0.0">{body}</scene>\n'
 
@@ -345,4 +450,7 @@ def files():
         "textures/evening_sky.exr": sky.environment_map(),
         "sky_over_model.xml": scene_text(
             "Diffuse things and a mirror under an evening sky that is an image, in the format of Mitsuba 3.", SKY_MAP),
+        "preview.xml": scene_text(
+            "A material on a sphere on a plinth, in the format of Mitsuba 3; -D material=gold picks another one of those at the end.",
+            PREVIEW),
     }

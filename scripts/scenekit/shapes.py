@@ -1,6 +1,7 @@
 """Shapes as Surface values: closed ones are wound outwards (counter-clockwise seen from outside), y is up.
 
-A face is a tuple of (position, normal) index pairs; normal None means the geometric normal.
+A face is a tuple of corners: indices (position, normal), or (position, normal, uv) where a surface has texture coordinates.
+normal None means the geometric normal.
 """
 import math
 from dataclasses import dataclass, field
@@ -13,6 +14,7 @@ class Surface:
     positions: list
     normals: list = field(default_factory=list)
     faces: list = field(default_factory=list)
+    uvs: list = field(default_factory=list)
 
     def triangle_count(self):
         return sum(len(face) - 2 for face in self.faces)
@@ -21,7 +23,7 @@ class Surface:
         """Area of the faces as fans of triangles, the way the renderer cuts them."""
         total = 0.0
         for face in self.faces:
-            p = [self.positions[i] for i, _ in face]
+            p = [self.positions[corner[0]] for corner in face]
             for k in range(1, len(p) - 1):
                 n = cross(sub(p[k], p[0]), sub(p[k + 1], p[0]))
                 total += math.sqrt(dot(n, n)) / 2

@@ -16,10 +16,15 @@ def triple(v):
 
 def obj_text(surface, comment):
     short = lambda v, digits: " ".join(number(round(x, digits)) for x in v)
-    corner = lambda c: str(c[0] + 1) if c[1] is None else f"{c[0] + 1}//{c[1] + 1}"
+
+    def corner(c):
+        position, normal, uv = (str(i + 1) if i is not None else "" for i in (*c, None)[:3])
+        return f"{position}/{uv}/{normal}" if normal or uv else position
+
     lines = [f"# {comment}", f"# {LICENCE}"]
     lines += ["v " + short(p, 5) for p in surface.positions]
     lines += ["vn " + short(n, 4) for n in surface.normals]
+    lines += ["vt " + short(uv, 5) for uv in surface.uvs]
     lines += ["f " + " ".join(corner(c) for c in face) for face in surface.faces]
     return "\n".join(lines) + "\n"
 

@@ -72,6 +72,11 @@ TEST_CASE("f cos and densities of diffuse, twosided and mask are Mitsuba's", "[m
     }
 }
 
+TEST_CASE("f cos and densities of principled and principledthin are Mitsuba's, those of oren_nayar its paper's",
+          "[mitsuba_bsdfs][stat]") {
+    require_all_pass(check_principled(Sources::embedded(), test_seed(127)));
+}
+
 TEST_CASE("Samples of dielectric, mask and null are Mitsuba's", "[mitsuba_bsdfs]") {
     struct Sample {
         const char *xml;

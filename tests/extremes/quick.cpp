@@ -42,8 +42,9 @@ void require_kept(const extremes::StressResult &s) {
 TEST_CASE("Single precision keeps what is promised at the ends of each range", "[quick]") {
     if (!doubles())
         return;
-    for (const char *name : {"scale", "distance", "light-size", "sphere-scale", "sphere-distance", "sphere-furnace",
-                             "sphere-light", "alpha", "phong", "edges", "numbers", "samplers", "depth", "height"})
+    for (const char *name :
+         {"scale", "distance", "light-size", "sphere-scale", "sphere-distance", "sphere-furnace", "sphere-light",
+          "alpha", "principled", "phong", "edges", "numbers", "samplers", "depth", "height"})
         require_kept(run_stress(row(name), device(), small(), 100));
 }
 

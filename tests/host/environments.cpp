@@ -235,7 +235,8 @@ TEST_CASE_METHOD(EnvironmentFixture, "an envmap of Mitsuba", "[environments]") {
     CHECK_THAT(error_in(mitsuba(envmap(file("b.exr")))), Catch::StartsWith(":2:24: "));
     scratch.write("b.exr", "no picture");
     CHECK_THAT(error_in(mitsuba(envmap(file("b.exr")))),
-               Catch::StartsWith(":2:24: property 'filename': ") && Catch::Contains("b.exr: this is no image"));
+               Catch::StartsWith(":2:24: property 'filename': ") &&
+                   Catch::Contains("b.exr: is a file of unknown kind, not an image"));
 }
 
 TEST_CASE_METHOD(EnvironmentFixture, "environments of Nori's forks have Nori's spherical coordinates",

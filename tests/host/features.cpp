@@ -54,6 +54,29 @@ TEST_CASE("a BSDF comes with those that it leads to, each record once", "[featur
     CHECK(outer.traits() == OPAL_SMOOTH);
 }
 
+TEST_CASE("numbers that are 0 in all principled materials are 0 in the kernel", "[features]") {
+    SceneDescription description = scene_of({diffuse(one_triangle), diffuse(one_triangle), diffuse(one_triangle)});
+    description.meshes[0].bsdf = bsdf_principled_record{.metallic = 1};
+    description.meshes[1].bsdf = bsdf_principled_record{.roughness = 0, .sheen = 0.5};
+    const FlatScene scene = flatten(description, 8);
+    uint expected = 0, place = 1;
+    for (const Parameter &parameter : bsdf_parameters(BSDF_principled)) {
+        if (std::set<std::string>{"roughness", "metallic", "sheen", "eta"}.contains(parameter.name))
+            expected |= place;
+        place *= 2;
+    }
+    CHECK(scene.features.nonzero[BSDF_principled] == expected);
+    CHECK(scene.features.nonzero[BSDF_diffuse] == ~0u); // which asks no such thing
+    CHECK_FALSE(scene.features[FEATURE_tangents]);
+    description.meshes[1].bsdf = bsdf_principled_record{.anisotropic = 0.1};
+    CHECK(flatten(description, 8).features[FEATURE_tangents]);
+    description.strategy.specialise = Specialise::off;
+    CHECK(flatten(description, 8).features.nonzero[BSDF_principled] == ~0u);
+    CHECK(flatten(description, 8).features[FEATURE_bsdf_principled]);
+    description.meshes = {description.meshes[2]};
+    CHECK_FALSE(flatten(description, 8).features[FEATURE_bsdf_principled]);
+}
+
 TEST_CASE("features are what the scene and the strategy ask for, each with a reason", "[features]") {
     SceneDescription description = scene_of({diffuse(one_triangle), light(one_triangle, {1, 1, 1})});
     description.meshes[0].bsdf = bsdf_mirror_record{};
@@ -117,6 +140,29 @@ TEST_CASE("features are what the scene and the strategy ask for, each with a rea
         strategy.rr_prob = 0.95;
         CHECK_FALSE(endless());
     }
+    SECTION("metals and glass") {
+        const auto with = [&](const Bsdf &bsdf) {
+            description.meshes[0].bsdf = bsdf;
+            return flatten(description, 8).features;
+        };
+        const Features rough = with(bsdf_roughconductor_record{.ggx = 1});
+        CHECK(rough[FEATURE_ggx]);
+        CHECK_FALSE(rough[FEATURE_beckmann]);
+        CHECK_FALSE(rough[FEATURE_all_facets]);
+        CHECK_FALSE(rough[FEATURE_tangents]);
+        CHECK(with(bsdf_roughdielectric_record{.sample_visible = 0})[FEATURE_all_facets]);
+        const Features brushed = with(bsdf_roughconductor_record{.alpha_u = 0.2});
+        CHECK(brushed[FEATURE_beckmann]);
+        CHECK(brushed[FEATURE_tangents]);
+        CHECK(brushed[FEATURE_tangents]);
+        CHECK(brushed[FEATURE_uv]);
+        CHECK_FALSE(with(bsdf_dielectric_record{})[FEATURE_tinted_glass]);
+        CHECK(with(bsdf_thindielectric_record{.specular_transmittance = 0.5})[FEATURE_tinted_glass]);
+        Bsdf textured = bsdf_dielectric_record{};
+        textured.textures[bsdf_parameter(BSDF_dielectric, "specular_reflectance")->texture_word] =
+            CheckerboardTexture{};
+        CHECK(with(textured)[FEATURE_tinted_glass]);
+    }
     SECTION("everything without specialisation") {
         description.strategy.specialise = Specialise::off;
         const Features features = flatten(description, 8).features;
@@ -124,11 +170,27 @@ TEST_CASE("features are what the scene and the strategy ask for, each with a rea
         const std::set<unsigned> second = {FEATURE_bsdf_mask,       FEATURE_bsdf_null,           FEATURE_emitter_sphere,
                                            FEATURE_emitter_spot,    FEATURE_emitter_directional, FEATURE_shape_sphere,
                                            FEATURE_camera_thinlens, FEATURE_camera_orthographic, FEATURE_sample_counts};
-        const std::set<unsigned> of_its_own = {
-            FEATURE_endless_paths,  FEATURE_hidden_emitters, FEATURE_uv,
-            FEATURE_tangents,       FEATURE_light_textures,  FEATURE_emitter_projector,
-            FEATURE_emitter_envmap, FEATURE_bsdf_blendbsdf,  FEATURE_bsdf_normalmap,
-            FEATURE_bsdf_bumpmap};
+        const std::set<unsigned> of_its_own = {FEATURE_endless_paths,
+                                               FEATURE_hidden_emitters,
+                                               FEATURE_uv,
+                                               FEATURE_tangents,
+                                               FEATURE_light_textures,
+                                               FEATURE_emitter_projector,
+                                               FEATURE_emitter_envmap,
+                                               FEATURE_bsdf_principled,
+                                               FEATURE_bsdf_principledthin,
+                                               FEATURE_bsdf_oren_nayar,
+                                               FEATURE_bsdf_conductor,
+                                               FEATURE_bsdf_roughconductor,
+                                               FEATURE_bsdf_thindielectric,
+                                               FEATURE_bsdf_roughdielectric,
+                                               FEATURE_beckmann,
+                                               FEATURE_ggx,
+                                               FEATURE_all_facets,
+                                               FEATURE_tinted_glass,
+                                               FEATURE_bsdf_blendbsdf,
+                                               FEATURE_bsdf_normalmap,
+                                               FEATURE_bsdf_bumpmap};
         description.meshes[0].bsdf = bsdf_null_record{};
         const Features others = flatten(description, 8).features;
         for (unsigned feature = 0; feature < FEATURE_COUNT; feature++) {

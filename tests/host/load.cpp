@@ -41,6 +41,10 @@ struct LoadFixture {
         return error_in((tag == "camera" ? "" : camera) + "\n<" + tag + " type='" + type + "'>\n" + property + "</" +
                         tag + ">");
     }
+    Bsdf bsdf(const std::string &xml) const {
+        std::string mesh = light;
+        return load(camera + mesh.insert(mesh.find("<emitter"), xml)).meshes.at(0).bsdf;
+    }
     std::string bsdf_error(const std::string &type, const std::string &property) const {
         return error_in(camera + "\n<mesh type='parallelogram'><bsdf type='" + type + "'>\n" + property +
                         "</bsdf></mesh>");
@@ -292,10 +296,6 @@ TEST_CASE_METHOD(LoadFixture, "camera values that make no sense fail at their pl
 }
 
 TEST_CASE_METHOD(LoadFixture, "BSDFs with their parameters", "[load]") {
-    auto bsdf = [&](const std::string &xml) {
-        std::string mesh = light;
-        return load(camera + mesh.insert(mesh.find("<emitter"), xml)).meshes.at(0).bsdf;
-    };
     CHECK(bsdf("<bsdf type='mirror'/>").kind() == BSDF_mirror);
     const auto glass = bsdf("<bsdf type='dielectric'/>").as<bsdf_dielectric_record>();
     CHECK(glass.int_ior.value == 1.5046f);
@@ -318,6 +318,41 @@ TEST_CASE_METHOD(LoadFixture, "BSDFs with their parameters", "[load]") {
     CHECK(phong.n.value == 1e8f);
     CHECK(phong.pd.value == 0.5f);
     CHECK(phong.ks.value[0] == 0.5f);
+}
+
+TEST_CASE_METHOD(LoadFixture, "principled, and the names that forks have for it", "[load]") {
+    const Bsdf plain = bsdf("<bsdf type='principled'/>");
+    CHECK(plain.as<bsdf_principled_record>().eta.value == 1.5f);
+    CHECK(plain.traits() == (OPAL_SMOOTH | OPAL_MANY_LOBES));
+    const Bsdf disney = bsdf("<bsdf type='disney'><color name='baseColor' value='0.1 0.2 0.3'/>"
+                             "<float name='subsurface' value='0.7'/><float name='specular' value='0.8'/>"
+                             "<float name='specularTint' value='0.25'/><float name='anisotropic' value='0.1'/></bsdf>");
+    const auto record = disney.as<bsdf_principled_record>();
+    CHECK(record.base_color.value[2] == 0.3f);
+    CHECK(record.flatness.value == 0.7f);
+    CHECK(record.spec_tint.value == 0.25f);
+    CHECK(record.eta.value == Approx(1.677315)); // Mitsuba's
+    CHECK(disney.traits() == (OPAL_SMOOTH | OPAL_TANGENTS | OPAL_MANY_LOBES));
+    const auto glass = [&](const std::string &more) {
+        return bsdf("<bsdf type='principled'><float name='specTrans' value='0.5'/>" + more + "</bsdf>")
+            .as<bsdf_principled_record>()
+            .eta.value;
+    };
+    CHECK(glass("<float name='eta' value='1'/>") == 1.001f);
+    CHECK(glass("<float name='specular' value='0'/>") == Approx(1.018050));
+    CHECK(bsdf("<bsdf type='principled'><float name='specular' value='0'/></bsdf>")
+              .as<bsdf_principled_record>()
+              .eta.value == 1);
+    CHECK_THAT(bsdf_error("principled", "<float name='eta' value='1.4'/><float name='specular' value='1'/>"),
+               Catch::StartsWith(":4:32: property 'specular': stands for eta, which is given too"));
+    CHECK_THAT(bsdf_error("principled", "<float name='specular' value='1.1'/>"),
+               Catch::StartsWith(":4:1: property 'specular': must be 0 to 1"));
+    CHECK_THAT(bsdf_error("twosided", "<bsdf type='principled'><float name='specTrans' value='0.1'/></bsdf>"),
+               Catch::EndsWith("a twosided cannot hold a BSDF that light passes through"));
+    CHECK(bsdf("<bsdf type='twosided'><bsdf type='principled'/></bsdf>").is<bsdf_twosided_record>());
+    CHECK(bsdf("<bsdf type='orenNayar'><color name='reflectance' value='0.2 0.2 0.2'/></bsdf>")
+              .as<bsdf_oren_nayar_record>()
+              .albedo.value[0] == 0.2f);
 }
 
 TEST_CASE_METHOD(LoadFixture, "BSDF values that make no sense fail at their place", "[load]") {

@@ -187,11 +187,26 @@ TEST_CASE_METHOD(MtlFixture, "materials become the BSDFs that Opal has", "[mtl]"
 
     CHECK(inner(blender_surface("Kd 1\nNs 1000\nKa 1\nillum 3\n")).is<bsdf_mirror_record>());
     const SurfaceOfMaterial gold = blender_surface("Kd 0.9 0.6 0.1\nNs 490\nKa 1\nillum 3\n");
-    REQUIRE(inner(gold).is<bsdf_phong_record>());
-    const auto lobe = inner(gold).as<bsdf_phong_record>();
-    CHECK(lobe.pd.value == 0);
-    CHECK(lobe.ks.value[1] == 0.6f);
-    CHECK(gold.lacking.size() == 1);
+    REQUIRE(inner(gold).is<bsdf_principled_record>());
+    const auto metal = inner(gold).as<bsdf_principled_record>();
+    CHECK(metal.metallic.value == 1);
+    CHECK(metal.base_color.value[1] == 0.6f);
+    CHECK(metal.roughness.value == Approx(0.3));
+    CHECK(metal.eta.value == 1.001f); // at 1 nothing would be reflected
+    CHECK(gold.lacking.empty());
+
+    const SurfaceOfMaterial lacquered = blender_surface("Kd 0.5\nKs 0.5\nNi 1.5\nPr 0.5\nPc 2\nPcr 0.1\n");
+    const auto coated = inner(lacquered).as<bsdf_principled_record>();
+    CHECK(coated.eta.value == Approx(1.5));
+    CHECK(coated.clearcoat.value == 1);
+    CHECK(coated.clearcoat_gloss.value == Approx((0.1 - 0.01) / 0.099));
+    CHECK(lacquered.lacking == std::vector<std::string>{"coat 0.5, which becomes 0.25"});
+    const auto cloth = inner(blender_surface("Kd 0.5\nPr 0.5\nPs 0.7\n")).as<bsdf_principled_record>();
+    CHECK(cloth.sheen.value == 0.7f);
+    const Bsdf frosted = blender_surface("Kd 0.9\nPr 0.4\nTf 0.8\nNi 1.4\n").bsdf;
+    REQUIRE(frosted.is<bsdf_principled_record>()); // light passes: it is not twosided
+    CHECK(frosted.as<bsdf_principled_record>().spec_trans.value == 0.8f);
+    CHECK(frosted.as<bsdf_principled_record>().eta.value == 1.4f);
 
     const SurfaceOfMaterial glass = blender_surface("Kd 1\nPr 0\nTf 1 1 1\nNi 1.45\n");
     REQUIRE(glass.bsdf.is<bsdf_dielectric_record>());
@@ -224,9 +239,14 @@ TEST_CASE_METHOD(MtlFixture, "numbers beyond what a BSDF can hold become the nea
 }
 
 TEST_CASE_METHOD(MtlFixture, "glass is smooth unless a statement says how rough it is", "[mtl]") {
-    CHECK(surface_of(one("Kd 1\nTf 1\nillum 4\n")).lacking.empty());
-    CHECK(surface_of(one("Kd 1\nTf 1\nillum 4\nKs 1\nNs 20\n")).lacking.size() == 1);
-    CHECK(surface_of(one("Kd 1\nTf 1\nPr 0.5\n")).lacking.size() == 1);
+    CHECK(surface_of(one("Kd 0\nTf 1\nillum 4\n")).bsdf.is<bsdf_dielectric_record>());
+    const auto rough = [&](const std::string &statements) {
+        const SurfaceOfMaterial surface = surface_of(one(statements));
+        CHECK(surface.lacking.empty());
+        return surface.bsdf.as<bsdf_principled_record>().roughness.value;
+    };
+    CHECK(rough("Kd 1\nTf 1\nillum 4\nKs 1\nNs 20\n") == Approx(std::pow(2 / 22., 0.25)));
+    CHECK(rough("Kd 1\nTf 1\nPr 0.5\n") == 0.5f);
 }
 
 TEST_CASE_METHOD(MtlFixture, "no material reflects more than all light", "[mtl]") {

@@ -4,6 +4,7 @@
 #include "support/scratch.h"
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 using namespace opal;
 using namespace opal::test;
@@ -47,6 +48,21 @@ TEST_CASE("An ordinary scene brings no warning", "[precision_warnings]") {
     CHECK(warnings_of(near, R"(<bsdf type="phong"><float name="n" value="1e6"/></bsdf>)").empty());
     CHECK(warnings_of(near, R"(<bsdf type="dielectric"/>)").empty());
     CHECK(warnings_of("0 -300 1", "").empty());
+}
+
+TEST_CASE("A principled material that gains light is told with its angle", "[precision_warnings]") {
+    const auto of = [](const std::string &type, const std::string &properties) {
+        return warnings_of(near, fmt::format(R"(<bsdf type="{}">{}</bsdf>)", type, properties));
+    };
+    const std::string white = R"(<color name="baseColor" value="1 1 1"/>)";
+    CHECK(of("principled", "").empty());
+    CHECK(of("principled", white + R"(<float name="metallic" value="1"/>)").empty());
+    CHECK(of("principled", white + R"(<float name="specTrans" value="1"/>)").empty());
+    CHECK(of("principledthin", "").empty());
+    CHECK(of("principledthin", white + R"(<float name="diffTrans" value="2"/>)").empty());
+    check_one(of("principled", white), "4:", "1.19 of the light that comes at 88 degrees"); // Mitsuba: 1.187 at 85
+    check_one(of("principled", white + R"(<float name="flatness" value="1"/>)"), "4:", "1.45 of the light");
+    check_one(of("principledthin", white), "4:", "1.03 of the light");
 }
 
 TEST_CASE("What makes light from nothing, or nothing of light, is told with its line", "[precision_warnings]") {

@@ -36,7 +36,7 @@ TEST_CASE("Bytes stay bytes, 16 bits become half floats or floats, each picture 
     linear->floats = {-2, 7, 0.1f};
     linear->encoded = false;
     LargeVector<uint> table;
-    TextureGatherer gatherer(table);
+    TextureGatherer gatherer(table, {});
     const BitmapTexture decoded{.picture = bytes}, raw{.picture = bytes, .raw = true};
     const uint first = gatherer.add(decoded), second = gatherer.add(raw), again = gatherer.add(decoded);
     const uint half = gatherer.add(BitmapTexture{.picture = deep});

@@ -38,7 +38,7 @@ std::vector<float> slots_of(unsigned seed) {
     return slots;
 }
 
-// Appends `count` samples of a pixel as a pass of kernels of so many lanes leaves them (cl/film/samples.cl).
+// Appends `count` samples of a pixel as a pass of kernels of so many lanes leaves them (samples.cl of cl/film).
 void append_samples(std::vector<float> &pass, const float *slots, unsigned count, int lanes) {
     if (lanes == 1) {
         pass.insert(pass.end(), slots, slots + 3 * size_t(count));

@@ -23,8 +23,10 @@ Findings check_warps(const Sources &sources, unsigned seed);         // warp_fin
 Findings check_bsdfs(const Sources &sources, unsigned seed);         // check_materials of tests/cases/bsdfs
 Findings check_nested_bsdfs(const Sources &sources, unsigned);       // blends and changed normals against Mitsuba's
 Findings check_facets(const Sources &sources, unsigned seed);        // densities of normals against integrals
+Findings check_principled(const Sources &sources, unsigned seed);    // and oren_nayar: f and densities, albedos
 Findings check_albedos(const Sources &sources, unsigned seed);       // microfacet against quadrature
 Findings check_refraction(const Sources &sources, unsigned seed);    // Snell's law and Fresnel's formulas in double
+Findings check_metals(const Sources &sources, unsigned);             // smooth metals and panes against Mitsuba
 Findings check_choices(const Sources &sources, unsigned seed);       // shares of BSDFs' parts, number by number
 Findings check_emitters(const Sources &sources, unsigned seed);      // check_lights of tests/cases/emitters
 Findings check_trigonometry(const Sources &sources, unsigned seed);  // cos_sin_2pi against double

@@ -1,5 +1,6 @@
-// Spots and cameras against values that Mitsuba 3.9.1 (scalar_rgb) gave.
+// Spots, cameras, environments, smooth metals and panes against values that Mitsuba 3.9.1 (scalar_rgb) gave.
 #include "densities/sampled.h"
+#include "read/nori/parsers.h"
 #include "scene/examples.h"
 #include "selftest/checks.h"
 #include "support/kernel_checks.h"
@@ -518,6 +519,62 @@ Findings check_environments(const Sources &sources, unsigned) {
             KernelProbe turned = probe_of(flatten(scene, lanes), lanes, sources);
             judge("radiance of a turned one", lanes, errors_of(turned, known_turned_sky, false).radiance, 4e-4);
         }
+    return findings;
+}
+
+// Samples of smooth metals and panes. Random numbers are right beside the reflectances that Mitsuba gives.
+Findings check_metals(const Sources &sources, unsigned) {
+    struct Sample {
+        const char *type, *properties;
+        Vec3 wi;
+        float lobe; // random number
+        Vec3 wo;
+        Color weight;
+    };
+    const char *const gold = "<string name='material' value='Au'/>",
+                      *const tinted = "<color name='specular_reflectance' value='0.5 0.25 1'/>"
+                                      "<color name='specular_transmittance' value='0.75 1 0.125'/>";
+    const Vec3 above{0.5, 0, 0.8660254}, below{0.5, 0, -0.8660254}, grazing{0.9254166, 0.3368241, 0.1736482};
+    const Vec3 up{-0.5, 0, 0.8660254}, down{-0.5, 0, -0.8660254};
+    const Sample samples[] = {
+        {"conductor", gold, {0, 0, 1}, 0, {0, 0, 1}, {0.9666793, 0.8020099, 0.3241215}},
+        {"conductor", gold, above, 0, up, {0.9664171, 0.8016297, 0.3261774}},
+        {"conductor", gold, grazing, 0, {-0.9254166, -0.3368241, 0.1736482}, {0.9632077, 0.8755594, 0.5917323}},
+        {"conductor", gold, below, 0, down, {0, 0, 0}},
+        {"conductor", "", above, 0, up, {1, 1, 1}},
+        {"thindielectric", "", above, 0.0807f, up, {1, 1, 1}}, // it reflects 0.08073905
+        {"thindielectric", "", above, 0.0808f, down, {1, 1, 1}},
+        {"thindielectric", "", below, 0.0807f, down, {1, 1, 1}},
+        {"thindielectric", "", grazing, 0.5594f, {-0.9254166, -0.3368241, 0.1736482}, {1, 1, 1}}, // and 0.5594963
+        {"thindielectric", "", grazing, 0.5596f, {-0.9254166, -0.3368241, -0.1736482}, {1, 1, 1}},
+        {"thindielectric", tinted, above, 0, up, {0.5, 0.25, 1}},
+        {"thindielectric", tinted, above, 0.9f, down, {0.75, 1, 0.125}},
+        {"dielectric", tinted, above, 0, up, {0.5, 0.25, 1}},
+        {"dielectric", tinted, below, 0.9f, {-0.7520916, 0, 0.6590585}, {0.75, 1, 0.125}},
+    };
+    std::vector<Bsdf> bsdfs;
+    for (const Sample &sample : samples) {
+        const XmlDocument document("a material",
+                                   fmt::format("<bsdf type='{}'>{}</bsdf>", sample.type, sample.properties));
+        bsdfs.push_back(parse_bsdf(document.root(), {}));
+    }
+    Findings findings;
+    for (int lanes : tested_lanes()) {
+        KernelProbe probe = probe_of(scene_of_bsdfs(bsdfs), lanes, sources);
+        for (unsigned id = 0; id < bsdfs.size(); id++) {
+            const Sample &sample = samples[id];
+            Planes numbers(2 * OPAL_PROBE_PAIRS, 1);
+            numbers.at(2, 0) = sample.lobe;
+            const Planes drawn = probe.bsdf_sample(id, sample.wi, numbers);
+            double error = length(drawn.vec3(BSDF_WO_X, 0) - sample.wo);
+            for (size_t c = 0; c < 3; c++)
+                error = std::max(error, std::abs(drawn.at(BSDF_WEIGHT_R + c, 0) - sample.weight[c]));
+            findings.push_back(
+                at_most("smooth metals and panes: direction and weight, off by", error, 2e-6,
+                        fmt::format("{} {} by {}{}", sample.type, sample.properties, sample.lobe, at_width(lanes))));
+            findings.push_back(exact("they are discrete", drawn.at(BSDF_DISCRETE, 0) == 1));
+        }
+    }
     return findings;
 }
 

@@ -5,7 +5,7 @@
 #include "core/math.cl"
 #include "film/filter.cl"
 #include "film/gather.cl"
-#include "film/samples.cl"
+#include "film/many_lanes/samples.cl"
 #include "film/sums.cl"
 #include "shared/film.h"
 #include "shared/types.h"

@@ -3,10 +3,13 @@
 #include "read/mitsuba/parsers.h"
 #include "read/texture_values.h"
 #include "scene/index_of_refraction.h"
+#include "scene/metals.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
+#include <cctype>
 
 namespace opal::mitsuba {
 
@@ -14,16 +17,10 @@ namespace {
 
 constexpr Color white{1, 1, 1};
 
-// A property of which Opal has the value 1 alone.
-void require_white(Importer &importer, Object &object, const char *name) {
-    if (importer.color(object, name, SpectrumUse::reflectance, white) != white)
-        importer.lacks(object, name, "Opal has only 1 here yet", "1 stands in for it");
-}
-
 // Sets a parameter of the material to that property: a texture, or a constant, of which the channels' mean is taken
 // where it is one number. It keeps its default if the property is not given.
-void set_parameter(Importer &importer, Object &object, const std::string &property, Bsdf &bsdf,
-                   const std::string &name) {
+void set_parameter(Importer &importer, Object &object, const std::string &property, Bsdf &bsdf, const std::string &name,
+                   SpectrumUse use = SpectrumUse::reflectance) {
     const Parameter &parameter = find_row(bsdf_parameters(bsdf.kind()), "parameter", name);
     const auto set = [&](const Color &color) {
         const auto put = [&](size_t i, double x) { bsdf.words[parameter.word + i] = std::bit_cast<uint>(float(x)); };
@@ -32,7 +29,7 @@ void set_parameter(Importer &importer, Object &object, const std::string &proper
         for (size_t i = 0; i < color.size(); i++)
             put(i, color[i]);
     };
-    if (const std::optional<Color> color = object.color(property, SpectrumUse::reflectance)) {
+    if (const std::optional<Color> color = object.color(property, use)) {
         for (double channel : *color)
             object.check(parameter.range.holds(channel), property, "must be " + text_of(parameter.range));
         set(*color);
@@ -43,6 +40,14 @@ void set_parameter(Importer &importer, Object &object, const std::string &proper
             warn_of_values(place, parameter, texture);
         });
     }
+}
+
+void set_number(Bsdf &bsdf, std::string_view name, double number) {
+    bsdf.words[bsdf_parameter(bsdf.kind(), name)->word] = std::bit_cast<uint>(float(number));
+}
+
+void set_flag(Bsdf &bsdf, std::string_view name, bool flag) {
+    bsdf.words[bsdf_parameter(bsdf.kind(), name)->word] = flag;
 }
 
 Bsdf parse_diffuse(Importer &importer, Object &object) {
@@ -63,24 +68,85 @@ double parse_index(Object &object, const char *name, const std::string &otherwis
     return index;
 }
 
-Bsdf parse_dielectric(Importer &importer, Object &object) {
+// The parameters of every boundary between two media.
+void set_boundary(Importer &importer, Object &object, Bsdf &bsdf) {
     const double inside = parse_index(object, "int_ior", "bk7"), outside = parse_index(object, "ext_ior", "air");
-    require_white(importer, object, "specular_reflectance");
-    require_white(importer, object, "specular_transmittance");
-    return bsdf_dielectric_record{.int_ior = inside, .ext_ior = outside};
+    set_number(bsdf, "int_ior", inside);
+    set_number(bsdf, "ext_ior", outside);
+    for (const char *name : {"specular_reflectance", "specular_transmittance"})
+        set_parameter(importer, object, name, bsdf, name);
 }
 
-// Opal's mirror is the conductor that reflects everything.
+Bsdf parse_dielectric(Importer &importer, Object &object) {
+    Bsdf bsdf = bsdf_dielectric_record{};
+    set_boundary(importer, object, bsdf);
+    return bsdf;
+}
+
+Bsdf parse_thindielectric(Importer &importer, Object &object) {
+    Bsdf bsdf = bsdf_thindielectric_record{};
+    set_boundary(importer, object, bsdf);
+    return bsdf;
+}
+
+// The parameters of every metal.
+void set_metal(Importer &importer, Object &object, Bsdf &bsdf) {
+    const std::string material = object.string("material").value_or("none");
+    for (const char *name : {"eta", "k"}) {
+        object.check(material == "none" || !object.has(name), name, "a metal has either a material, or eta and k");
+        set_parameter(importer, object, name, bsdf, name, SpectrumUse::index);
+    }
+    if (const Metal *const metal = find_metal(material); !metal)
+        object.mistake_at("material", unknown_name("material", material, names_of(metals())));
+    else if (material != "none") {
+        set_color(bsdf, "eta", metal->eta);
+        set_color(bsdf, "k", metal->k);
+    }
+    set_parameter(importer, object, "specular_reflectance", bsdf, "specular_reflectance");
+}
+
+// The parameters of every surface of facets. The distribution in upper or lower case, as Mitsuba has it.
+void set_facets(Importer &importer, Object &object, Bsdf &bsdf) {
+    const bool one = object.has("alpha");
+    for (const char *name : {"alpha_u", "alpha_v"}) {
+        object.check(!one || !object.has(name), name, "there is either alpha, or alpha_u and alpha_v");
+        set_parameter(importer, object, "alpha", bsdf, name);
+        set_parameter(importer, object, name, bsdf, name);
+    }
+    if (!one && object.has("alpha_u") != object.has("alpha_v"))
+        object.mistake("alpha_u and alpha_v must be given together");
+    std::string name = object.string("distribution").value_or("beckmann");
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    object.check(name == "ggx" || name == "beckmann", "distribution",
+                 unknown_name("distribution", name, {"beckmann", "ggx"}));
+    set_flag(bsdf, "ggx", name == "ggx");
+    set_flag(bsdf, "sample_visible", object.boolean("sample_visible").value_or(true));
+}
+
+// A conductor, or the mirror that the one without parameters is.
+Bsdf simplest(const Bsdf &bsdf) {
+    return bsdf.words == words_of(bsdf_conductor_record{}) && bsdf.textures.empty() ? Bsdf(bsdf_mirror_record{}) : bsdf;
+}
+
 Bsdf parse_conductor(Importer &importer, Object &object) {
-    const bool has_material = object.string("material").value_or("none") != "none";
-    const char *const other = has_material ? "material" : object.has("eta") ? "eta" : object.has("k") ? "k" : nullptr;
-    if (other)
-        importer.lacks(object, other, "Opal has only the conductor that reflects everything yet, material none",
-                       "that one stands in for it");
-    for (const char *name : {"eta", "k"})
-        object.ignore(name);
-    require_white(importer, object, "specular_reflectance");
-    return bsdf_mirror_record{};
+    Bsdf bsdf = bsdf_conductor_record{};
+    set_metal(importer, object, bsdf);
+    return simplest(bsdf);
+}
+
+Bsdf parse_roughconductor(Importer &importer, Object &object) {
+    Bsdf bsdf = bsdf_roughconductor_record{};
+    set_metal(importer, object, bsdf);
+    set_facets(importer, object, bsdf);
+    return simplest(without_facets(bsdf));
+}
+
+Bsdf parse_roughdielectric(Importer &importer, Object &object) {
+    Bsdf bsdf = bsdf_roughdielectric_record{};
+    set_boundary(importer, object, bsdf);
+    set_facets(importer, object, bsdf);
+    object.check(!has_equal_indices(bsdf), "int_ior", "must differ from ext_ior");
+    return without_facets(bsdf);
 }
 
 // The materials within a material, of which there must be so many.
@@ -163,18 +229,55 @@ Bsdf parse_bumpmap(Importer &importer, Object &object) {
     return bsdf;
 }
 
+// The parameters of Disney's materials bear Mitsuba's names.
+void set_parameters(Importer &importer, Object &object, Bsdf &bsdf, const std::string &but) {
+    for (const Parameter &parameter : bsdf_parameters(bsdf.kind()))
+        if (parameter.name != but)
+            set_parameter(importer, object, parameter.name, bsdf, parameter.name);
+}
+
+Bsdf parse_principled(Importer &importer, Object &object) {
+    Bsdf bsdf = bsdf_principled_record{};
+    set_parameters(importer, object, bsdf, "eta");
+    const auto eta = object.number("eta"), specular = object.number("specular");
+    object.check(!eta || *eta > 0, "eta", "must be above 0");
+    object.check(!specular || BETWEEN(0, 1).holds(*specular), "specular", "must be " + text_of(BETWEEN(0, 1)));
+    object.check(!eta || !specular, "specular", "stands for eta, which is given too");
+    auto record = bsdf.as<bsdf_principled_record>();
+    record.eta = principled_index(eta, specular, record.spec_trans.value > 0);
+    bsdf.words = words_of(record);
+    for (const char *name : {"main_specular_sampling_rate", "clearcoat_sampling_rate",
+                             "diffuse_reflectance_sampling_rate"}) // noise alone depends on them
+        object.ignore(name);
+    return bsdf;
+}
+
+Bsdf parse_principledthin(Importer &importer, Object &object) {
+    Bsdf bsdf = bsdf_principledthin_record{};
+    set_parameters(importer, object, bsdf, "");
+    for (const char *name : {"specular_reflectance_sampling_rate", "specular_transmittance_sampling_rate",
+                             "diffuse_transmittance_sampling_rate", "diffuse_reflectance_sampling_rate"})
+        object.ignore(name);
+    return bsdf;
+}
+
 Bsdf parse_null(Importer &, Object &) { return bsdf_null_record{}; }
 
 const std::vector<Plugin<Bsdf (*)(Importer &, Object &)>> bsdf_types = {
     {"diffuse", "diffuse", parse_diffuse},
     {"dielectric", "dielectric", parse_dielectric},
-    {"conductor", "mirror", parse_conductor},
+    {"thindielectric", "thindielectric", parse_thindielectric},
+    {"roughdielectric", "roughdielectric", parse_roughdielectric},
+    {"conductor", "conductor", parse_conductor},
+    {"roughconductor", "roughconductor", parse_roughconductor},
     {"twosided", "twosided", parse_twosided},
     {"mask", "mask", parse_mask},
     {"blendbsdf", "blendbsdf", parse_blendbsdf},
     {"normalmap", "normalmap", parse_normalmap},
     {"bumpmap", "bumpmap", parse_bumpmap},
     {"null", "null", parse_null},
+    {"principled", "principled", parse_principled},
+    {"principledthin", "principledthin", parse_principledthin},
 };
 
 } // namespace

@@ -1,6 +1,7 @@
 // The parser of BSDFs: their parameters are those of cl/bsdfs/NAME.h, by their names in the XML.
 #include "read/nori/parsers.h"
 #include "scene/index_of_refraction.h"
+#include "scene/metals.h"
 
 #include <fmt/format.h>
 
@@ -28,13 +29,52 @@ std::optional<double> number_or_medium(Properties &properties, const Parameter &
     return properties.number(parameter.xml_name);
 }
 
+// What metals have by name in place of eta and k.
+void read_metal(Properties &properties, Bsdf &bsdf) {
+    if (!bsdf_parameter(bsdf.kind(), "eta"))
+        return;
+    const std::optional<std::string> name = properties.string("material");
+    if (!name || (*name == "none" && (properties.has("eta") || properties.has("k"))))
+        return;
+    for (const char *index : {"eta", "k"})
+        properties.check(!properties.has(index), index, "a metal has either a material, or eta and k");
+    const Metal *const metal = find_metal(*name);
+    if (!metal)
+        return properties.mistake_at("material", unknown_name("material", *name, names_of(metals())));
+    set_color(bsdf, "eta", metal->eta);
+    set_color(bsdf, "k", metal->k);
+}
+
+// What surfaces of facets have by other names: alpha, of both directions, and the distribution.
+void read_facets(Properties &properties, Bsdf &bsdf) {
+    const Parameter *const u = bsdf_parameter(bsdf.kind(), "alpha_u"), *const v =
+                                                                           bsdf_parameter(bsdf.kind(), "alpha_v");
+    if (!u || !v)
+        return;
+    if (const std::optional<double> alpha = properties.number("alpha")) {
+        for (const char *other : {"alpha_u", "alpha_v"})
+            properties.check(!properties.has(other), other, "there is either alpha, or alpha_u and alpha_v");
+        properties.check(u->range.holds(*alpha), "alpha", "must be " + text_of(u->range));
+        bsdf.words[u->word] = bsdf.words[v->word] = std::bit_cast<uint>(float(*alpha));
+    } else if (properties.has("alpha_u") != properties.has("alpha_v")) {
+        properties.mistake("alpha_u and alpha_v must be given together");
+    }
+    if (const std::optional<std::string> name = properties.string("distribution")) {
+        properties.check(*name == "ggx" || *name == "beckmann", "distribution",
+                         unknown_name("distribution", *name, {"beckmann", "ggx"}));
+        bsdf.words[bsdf_parameter(bsdf.kind(), "ggx")->word] = *name == "ggx";
+    }
+}
+
 struct BsdfType {
     std::string name;
     std::vector<uint> words; // its record with all defaults
 };
 
+// disney, orenNayar: public forks.
 #define OPAL_BSDF_TYPE(name, traits) {#name, words_of(bsdf_##name##_record{})},
-const std::vector<BsdfType> bsdf_types = {OPAL_ALL_BSDFS(OPAL_BSDF_TYPE)};
+const std::vector<BsdfType> bsdf_types = {OPAL_ALL_BSDFS(OPAL_BSDF_TYPE){"disney", words_of(bsdf_principled_record{})},
+                                          {"orenNayar", words_of(bsdf_oren_nayar_record{})}};
 
 // Sets the words of a parameter that the object has. A BSDF is no property: add_children reads it.
 void read_parameter(Properties &properties, const Parameter &parameter, std::span<uint> words) {
@@ -59,6 +99,17 @@ void read_parameter(Properties &properties, const Parameter &parameter, std::spa
             words[parameter.word] = *flag;
         break;
     }
+}
+
+// principled: `specular` stands for eta.
+void read_specular(Properties &properties, Bsdf &bsdf) {
+    auto record = bsdf.as<bsdf_principled_record>();
+    const auto specular = properties.number("specular");
+    properties.check(!specular || !properties.has("eta"), "specular", "stands for eta, which is given too");
+    properties.check(!specular || BETWEEN(0, 1).holds(*specular), "specular", "must be " + text_of(BETWEEN(0, 1)));
+    const auto eta = properties.has("eta") ? std::optional<double>(record.eta.value) : std::nullopt;
+    record.eta = principled_index(eta, specular, record.spec_trans.value > 0);
+    bsdf.words = words_of(record);
 }
 
 // Reads the BSDFs within a BSDF, as many as it has parameters of that type.
@@ -93,6 +144,12 @@ Bsdf parse_bsdf(const XmlNode &node, const ParseContext &context) {
     bsdf.words = type->words;
     for (const Parameter &parameter : bsdf_parameters(bsdf.kind()))
         read_parameter(properties, parameter, bsdf.words);
+    if (bsdf.is<bsdf_principled_record>())
+        read_specular(properties, bsdf);
+    read_metal(properties, bsdf);
+    read_facets(properties, bsdf);
+    properties.check(!has_equal_indices(bsdf), "intIOR", "must differ from extIOR");
+    bsdf = without_facets(bsdf);
     add_children(properties, *type, bsdf);
     bsdf.check_count();
     for (const XmlNode &texture : properties.children("texture"))

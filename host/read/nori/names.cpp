@@ -26,6 +26,7 @@ struct OtherProperty {
 // file.
 const std::vector<OtherProperty> other_properties = {
     {"bsdf", "", "reflectance", "albedo"},
+    {"bsdf", "disney", "subsurface", "flatness"},
     {"camera", "", "radius", "lensRadius"},
     {"camera", "", "apertureRadius", "lensRadius"},
     {"camera", "", "aperture", "lensRadius"},

@@ -1,0 +1,67 @@
+#include "scene/metals.h"
+
+#include "scene/parameters.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace opal {
+
+namespace {
+
+// Whether a parameter is 0 everywhere.
+bool is_zero(const Bsdf &bsdf, std::string_view name) {
+    const Parameter &parameter = *bsdf_parameter(bsdf.kind(), name);
+    return bsdf.words[parameter.word] == 0 && !bsdf.textures.contains(parameter.texture_word);
+}
+
+// The BSDF of that record, whose members are the first ones of the given one.
+template <class Record> Bsdf first_part(const Bsdf &bsdf) {
+    Bsdf part = Record{};
+    std::copy_n(bsdf.words.begin() + 1, part.words.size() - 1, part.words.begin() + 1);
+    for (const auto &[word, texture] : bsdf.textures)
+        if (word < part.words.size())
+            part.textures[word] = texture;
+    part.place = bsdf.place;
+    return part;
+}
+
+} // namespace
+
+std::span<const Metal> metals() {
+    static const Metal table[] = {
+#include "scene/metals.inc"
+        {"none", {0, 0, 0}, {1, 1, 1}},
+    };
+    return table;
+}
+
+const Metal *find_metal(const std::string &name) {
+    for (const Metal &metal : metals())
+        if (metal.name == name)
+            return &metal;
+    return nullptr;
+}
+
+void set_color(Bsdf &bsdf, std::string_view name, const Color &color) {
+    const Parameter &parameter = *bsdf_parameter(bsdf.kind(), name);
+    for (size_t i = 0; i < color.size(); i++)
+        bsdf.words[parameter.word + i] = std::bit_cast<uint>(float(color[i]));
+}
+
+bool has_equal_indices(const Bsdf &bsdf) {
+    if (!bsdf.is<bsdf_roughdielectric_record>())
+        return false;
+    const auto glass = bsdf.as<bsdf_roughdielectric_record>();
+    return glass.int_ior.value == glass.ext_ior.value;
+}
+
+Bsdf without_facets(const Bsdf &bsdf) {
+    const bool is_metal = bsdf.is<bsdf_roughconductor_record>();
+    if ((!is_metal && !bsdf.is<bsdf_roughdielectric_record>()) || !is_zero(bsdf, "alpha_u") ||
+        !is_zero(bsdf, "alpha_v"))
+        return bsdf;
+    return is_metal ? first_part<bsdf_conductor_record>(bsdf) : first_part<bsdf_dielectric_record>(bsdf);
+}
+
+} // namespace opal

@@ -1,0 +1,32 @@
+// Metals by name, and the materials that rough ones become where they are smooth.
+#pragma once
+
+#include "base/color.h"
+#include "scene/scene.h"
+
+#include <span>
+#include <string>
+
+namespace opal {
+
+struct Metal {
+    std::string name; // "Au"
+    Color eta, k;     // index of refraction eta - i k, linear RGB
+};
+std::span<const Metal> metals(); // the 71 that Mitsuba 3 knows, and "none", which reflects everything
+
+// The metal of that name, upper and lower case as there; null where there is none.
+const Metal *find_metal(const std::string &name);
+
+// Sets a COLOR of a BSDF, by its name.
+void set_color(Bsdf &bsdf, std::string_view name, const Color &color);
+
+// Whether the indices of refraction of a roughdielectric are one: then no facet refracts, and none can be told from the
+// directions that it refracts.
+bool has_equal_indices(const Bsdf &bsdf);
+
+// The smooth material that a rough one is whose roughness is 0: of a roughconductor the conductor, of a roughdielectric
+// the dielectric, of others the same.
+Bsdf without_facets(const Bsdf &bsdf);
+
+} // namespace opal
