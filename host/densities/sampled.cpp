@@ -112,6 +112,8 @@ Sampled sampled_bsdf(KernelProbe &probe, unsigned id, Vec3 wi) {
     };
     sampled.splits_u = {0};
     sampled.relative_error = 1e-4; // directions in single precision leave a narrow lobe no more
+    if (traits & OPAL_PERTURBS)
+        sampled.relative_error = 2e-3; // it jumps where a direction gets to the other side of one normal
     add_peak(sampled, {-wi.x, -wi.y, wi.z}, lobe_width(probe, id, wi));
     if (wi.z < 0.2) { // where densities over half vectors, 1 / h.wo, are steep
         const std::vector<double> grazing = stats::splits_about(wi.z, wi.z / 2, -1, 1);
