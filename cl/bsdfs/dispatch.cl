@@ -191,7 +191,7 @@ static BsdfResponse blend_respond(const Scene *scene, const Surface *s, v3 wo, m
             all.cosine = 1;
             all.pdf = pdf;
             asked = asked & to_mask(leaf.blends > 0u);
-            mixed = asked & sampled & !r.sample.discrete & r.sample.pdf > 0;
+            mixed = asked & sampled & !r.sample.discrete & (r.sample.pdf > 0);
             drawn = to_world(opened.frame, r.sample.wo);
             drawn_f_cos = v3_scale(r.sample.weight, leaf.share * r.sample.pdf);
             drawn_pdf = chance * r.sample.pdf;

@@ -135,6 +135,8 @@ Sampled sampled_bsdf(KernelProbe &probe, unsigned id, Vec3 wi) {
     };
     sampled.splits_u = {0};
     sampled.relative_error = 1e-4; // directions in single precision leave a narrow lobe no more
+    if (traits & OPAL_PERTURBS)
+        sampled.relative_error = 2e-3; // it jumps where a direction gets to the other side of one normal
     add_peak(sampled, {-wi.x, -wi.y, wi.z}, lobe_width(probe, id, wi));
     if (traits & OPAL_TRANSMITS)
         add_passing_peak(sampled, probe, id, wi);
