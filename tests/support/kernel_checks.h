@@ -34,8 +34,8 @@ Findings check_delta_lights(const Sources &sources, unsigned);       // spots an
 Findings check_sphere_lights(const Sources &sources, unsigned seed); // from near, far and inside
 // Samples of lights with textures against rays, alone and together.
 Findings check_textured_lights(const Sources &sources, unsigned seed);
-Findings check_environments(const Sources &sources, unsigned);       // radiance and density against Mitsuba's
-Findings check_skies(const Sources &sources, unsigned seed);         // environments that are hard to sample
+Findings check_environments(const Sources &sources, unsigned); // radiance and density against Mitsuba's
+Findings check_skies(const Sources &sources, unsigned seed);   // environments that are hard to sample
 
 // material_findings of these materials.
 Findings check_materials(const std::vector<Material> &materials, const Sources &sources, unsigned seed);
