@@ -38,8 +38,8 @@ static MicrofacetDistribution thin_facets(principledthin_bsdf b, mask reflects) 
     return disney_facets(b.roughness * (reflects ? (real)(1) : slab), b.anisotropic);
 }
 
-// Whether a facet takes light between wi, wi.z > 0, and wo. Mitsuba asks that the true wo lies on its side of the facet,
-// though facets mirror; and so some light is lost, and more of it one way than the other.
+// Whether a facet takes light between wi, wi.z > 0, and wo. Mitsuba asks that the true wo lies on its side of the
+// facet, though facets mirror; and so some light is lost, and more of it one way than the other.
 static mask thin_facet_is_met(v3 wi, v3 wo, v3 h) {
     real side = v3_dot(wo, h);
     return (v3_dot(wi, h) > 0) & (wo.z > 0 ? side > 0 : side < 0);

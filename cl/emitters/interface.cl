@@ -5,8 +5,9 @@
 //                                          radiance that a ray of direction d (unit) finds; 0 for delta lights
 //   real emitter_NAME_pdf(scene, id, from, d, s)
 //                                          density of _sample at d, solid angle measure, 1/sr; 0 for delta lights
-// color: that of the record; of lights on surfaces _radiance gets it times their texture. u: a pair of random numbers in [0, 1); bits: a pair of random words, for choices among
-// many. s: the surface that the ray met; of lights that are infinitely far nothing.
+// color: that of the record; of lights on surfaces _radiance gets it times their texture. u: a pair of random numbers
+// in [0, 1); bits: a pair of random words, for choices among many. s: the surface that the ray met; of lights that are
+// infinitely far nothing.
 // Functions compute all lanes; their callers pick those that are meant, but all lanes of a LightSample are finite.
 // _radiance and _pdf of delta lights are never called.
 #include "core/lanes.cl"

@@ -1,6 +1,6 @@
-// projector: a point light that throws an image onto what is before it; only light sampling finds it. On any plane across
-// its axis the irradiance is that of the image: the intensity grows with the third power of 1 / cosine of the angle to
-// the axis (Mitsuba). A texture multiplies it: its unit square is the image.
+// projector: a point light that throws an image onto what is before it; only light sampling finds it. On any plane
+// across its axis the irradiance is that of the image: the intensity grows with the third power of 1 / cosine of the
+// angle to the axis (Mitsuba). A texture multiplies it: its unit square is the image.
 //   <emitter type="projector"> <point name="position" value="0 3 0"/> <vector name="direction" value="0 -1 0"/>
 //     <color name="irradiance" value="10 10 10"/> <float name="fov" value="40"/> </emitter>
 #include "core/lanes.cl"

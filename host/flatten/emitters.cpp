@@ -83,7 +83,7 @@ private:
     TextureGatherer &textures_;
     FlatScene &scene_;
     std::vector<uint> slots_;
-    std::size_t textured_ = 0;   // meshes that emit by a texture
+    std::size_t textured_ = 0; // meshes that emit by a texture
     SourcePlace environment_place_;
     std::vector<double> powers_; // of each emitter, W, times the square of the flattening's scale
 

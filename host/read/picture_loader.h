@@ -53,7 +53,7 @@ private:
     std::condition_variable changed_;
     std::deque<Job> jobs_;
     std::vector<std::function<void()>> then_; // when_loaded
-    std::size_t next_ = 0; // the first job that nobody took
+    std::size_t next_ = 0;                    // the first job that nobody took
     bool ended_ = false;
     std::vector<std::thread> threads_;
 };

@@ -13,9 +13,9 @@ namespace opal {
 // Linear RGB, W / (m^2 sr), interpolated bilinearly. Of a direction d in the map's own frame, u = atan2(d.x, -d.z) / 2
 // pi and v = acos(d.y) / pi: column x is at u = (x + 1/2) / width, modulo 1, row y at v = y / (height - 1).
 struct EnvironmentMap {
-    int width = 0, height = 0;        // at least 1 and 3
-    LargeVector<float> texels;        // R, G, B, rows from the top, finite and not negative
-    double mean_luminance = 0;        // over all directions
+    int width = 0, height = 0; // at least 1 and 3
+    LargeVector<float> texels; // R, G, B, rows from the top, finite and not negative
+    double mean_luminance = 0; // over all directions
 
     float luminance_at(std::size_t texel) const;
 };

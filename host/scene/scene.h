@@ -33,8 +33,8 @@ std::span<const DialectRow> dialects(); // index = Dialect
 inline const std::string &name_of(Dialect dialect) { return dialects()[static_cast<std::size_t>(dialect)].name; }
 
 // Names of kinds, as the XML gives them: "diffuse".
-const char *bsdf_name(unsigned kind);   // kind: BSDF_*
-unsigned bsdf_traits(unsigned kind);    // OPAL_SMOOTH and so on, as bits; of a kind that leads to others its own
+const char *bsdf_name(unsigned kind); // kind: BSDF_*
+unsigned bsdf_traits(unsigned kind);  // OPAL_SMOOTH and so on, as bits; of a kind that leads to others its own
 // Those of the record whose first word is words[at]: what numbers of 0 take away is not among them.
 unsigned traits_of_record(std::span<const uint> words, size_t at);
 const char *camera_name(unsigned kind); // kind: CAMERA_*

@@ -146,10 +146,10 @@ TEST_CASE_METHOD(MistakesFixture, "lenient: unknown types get something in their
         return load(body, true);
     };
     const std::string mesh = "<mesh type='parallelogram'>" + square;
-    const SceneDescription disney =
-        check(camera + light + mesh + "<bsdf type='disney'><float name='metallic' value='1'/></bsdf></mesh>",
-              ":4:128: unknown bsdf type 'disney'", "a diffuse one of albedo 0.5 stands in for it");
-    CHECK(disney.meshes.at(1).bsdf.as<bsdf_diffuse_record>().albedo.value[0] == 0.5f);
+    const SceneDescription dipole =
+        check(camera + light + mesh + "<bsdf type='dipole'><float name='metallic' value='1'/></bsdf></mesh>",
+              ":4:128: unknown bsdf type 'dipole'", "a diffuse one of albedo 0.5 stands in for it");
+    CHECK(dipole.meshes.at(1).bsdf.as<bsdf_diffuse_record>().albedo.value[0] == 0.5f);
     CHECK(check(camera + light + "<emitter type='sunsky'><string name='filename' value='a.exr'/></emitter>",
                 ":4:1: unknown emitter type 'sunsky'", "it is left out")
               .lights.empty());

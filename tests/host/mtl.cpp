@@ -421,7 +421,7 @@ TEST_CASE_METHOD(MtlFixture, "pictures of colours and of opacity are rendered", 
     const Bsdf coated = mesh_of("map_Kd maps/my wood.exr\nPr 0.5\n").bsdf.children.at(0);
     CHECK(texture_of(coated, "kd").picture->width == 2);
     const Bsdf metal = mesh_of("map_Kd maps/my wood.exr\nPr 0.5\nPm 1\n").bsdf.children.at(0);
-    CHECK(texture_of(metal, "ks").picture->width == 2);
+    CHECK(texture_of(metal, "base_color").picture->width == 2);
     const Bsdf fence = mesh_of("map_d maps/my wood.exr\n").bsdf;
     REQUIRE(fence.is<bsdf_mask_record>());
     CHECK(fence.as<bsdf_mask_record>().opacity.value == 1);

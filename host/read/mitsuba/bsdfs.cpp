@@ -33,7 +33,11 @@ void set_parameter(Importer &importer, Object &object, const std::string &proper
         for (double channel : *color)
             object.check(parameter.range.holds(channel), property, "must be " + text_of(parameter.range));
         set(*color);
-    } else if (const std::optional<Texture> texture = importer.texture(object, property)) {
+    } else if (std::optional<Texture> texture = importer.texture(object, property)) {
+        // Where Mitsuba 3.9.1 wants one number of a checkerboard, the colours change places.
+        if (auto *squares = std::get_if<CheckerboardTexture>(&*texture);
+            squares && parameter.type == ParameterType::NUMBER)
+            std::swap(squares->color0, squares->color1);
         set(white); // which the texture multiplies
         bsdf.textures[parameter.texture_word] = *texture;
         importer.context().pictures->when_loaded([place = object.place_of(property), &parameter, texture = *texture] {

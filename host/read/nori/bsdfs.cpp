@@ -31,7 +31,7 @@ std::optional<double> number_or_medium(Properties &properties, const Parameter &
 
 // What metals have by name in place of eta and k.
 void read_metal(Properties &properties, Bsdf &bsdf) {
-    if (!bsdf_parameter(bsdf.kind(), "eta"))
+    if (!bsdf_parameter(bsdf.kind(), "k"))
         return;
     const std::optional<std::string> name = properties.string("material");
     if (!name || (*name == "none" && (properties.has("eta") || properties.has("k"))))

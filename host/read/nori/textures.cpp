@@ -60,8 +60,8 @@ std::shared_ptr<const Picture> picture_of(Properties &properties, std::initializ
         properties.required(name, *names.begin());
     const ParseContext &context = properties.context();
     try {
-        return context.pictures->load_now(
-            find_file(properties, property, *name, "0.5 stands in for the texture"), context.hashes);
+        return context.pictures->load_now(find_file(properties, property, *name, "0.5 stands in for the texture"),
+                                          context.hashes);
     } catch (const Error &error) {
         if (!context.lenient)
             properties.fail_at(property, error.what());
