@@ -964,9 +964,9 @@ TEST_CASE_METHOD(MitsubaFixture, "textures of reflectance and opacity", "[mitsub
     const Bsdf mask = textured_cube("mask", "<texture name='opacity' type='checkerboard'/><bsdf type='diffuse'/>");
     CHECK(mask.as<bsdf_mask_record>().opacity.value == 1.f);
     REQUIRE(mask.textures.size() == 1);
-    const auto squares = std::get<CheckerboardTexture>(mask.textures.begin()->second); // of a number: exchanged
-    CHECK(squares.color0 == Color{0.2, 0.2, 0.2});
-    CHECK(squares.color1 == Color{0.4, 0.4, 0.4});
+    const auto exchanged = std::get<CheckerboardTexture>(mask.textures.begin()->second); // of a number
+    CHECK(exchanged.color0 == Color{0.2, 0.2, 0.2});
+    CHECK(exchanged.color1 == Color{0.4, 0.4, 0.4});
     // A turned rectangle's sides are exchanged, but not its texture coordinates.
     for (const std::string &turn : {mirrored, std::string("<boolean name='flip_normals' value='true'/>")})
         CHECK(std::get<Parallelogram>(shape("rectangle", turn).shape).uv_exchanged);
