@@ -2,8 +2,8 @@
 //   <bsdf type="bumpmap"> <texture type="bitmap"> <string name="filename" value="bricks.png"/>
 //   <boolean name="raw" value="true"/> </texture> <float name="scale" value="0.05"/> <bsdf type="diffuse"/> </bsdf>
 // The normal is that of the tangents dp/du + n dh/du and dp/dv + n dh/dv, on the geometric normal's side (Blinn 1978,
-// "Simulation of Wrinkled Surfaces"). h's derivatives are those of the bilinear interpolation between texels. What keeps
-// light right: bsdfs/perturb.cl.
+// "Simulation of Wrinkled Surfaces"). h's derivatives are those of the bilinear interpolation between texels. What
+// keeps light right: bsdfs/perturb.cl.
 #include "bsdfs/interface.cl"
 #include "bsdfs/perturb.cl"
 #include "core/lanes.cl"

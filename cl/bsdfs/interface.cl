@@ -7,8 +7,8 @@
 //                                               and, if that is simpler, where weights are 0
 //   BsdfSample NAME_sample(b, wi, u, lobe)      draws wo by random numbers u and lobe in [0, 1)
 // A BSDF that leads to others (OPAL_NESTING_BSDFS) offers this alone:
-//   BsdfOpening NAME_open(scene, s, b, o, m)    the BSDF to ask in its place of the surface s, and the directions to ask
-//                                               it with, in the lanes of m
+//   BsdfOpening NAME_open(scene, s, b, o, m)    the BSDF to ask in its place of the surface s, and the directions to
+//                                               ask it with, in the lanes of m
 // b is a NAME_bsdf, the lanes' parameters; NAME_at reads them. Both are made of bsdfs/NAME.h below.
 // Functions compute all lanes; their callers pick those that are meant.
 #include "bsdfs/list.h"

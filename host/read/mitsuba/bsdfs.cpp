@@ -217,6 +217,9 @@ Bsdf parse_normalmap(Importer &importer, Object &object) {
 
 Bsdf parse_bumpmap(Importer &importer, Object &object) {
     Bsdf bsdf = bsdf_bumpmap_record{.height = 1};
+    const double scale = object.number("scale").value_or(1);
+    bsdf.words[find_row(bsdf_parameters(BSDF_bumpmap), "parameter", "scale").word] = std::bit_cast<uint>(float(scale));
+    set_perturbation(importer, object, bsdf);
     const auto textures = object.children("texture");
     if (textures.size() != 1) {
         object.mistake(fmt::format("a bumpmap has 1 <texture> within it, not {}", textures.size()));
@@ -227,9 +230,6 @@ Bsdf parse_bumpmap(Importer &importer, Object &object) {
             textures.front()->mistake("a bumpmap needs a texture of type bitmap, which has slopes");
         bsdf.textures[find_row(bsdf_parameters(BSDF_bumpmap), "parameter", "height").texture_word] = *texture;
     }
-    set_perturbation(importer, object, bsdf);
-    const double scale = object.number("scale").value_or(1);
-    bsdf.words[find_row(bsdf_parameters(BSDF_bumpmap), "parameter", "scale").word] = std::bit_cast<uint>(float(scale));
     return bsdf;
 }
 
