@@ -288,7 +288,7 @@ const std::vector<Control> densities = {
      "principled",
      check_principled},
     {{"a thin sheet's facets that send light where they are not met", "bsdfs/principledthin.cl",
-      "(v.pdf > 0) & (!faceted | thin_facet_is_met(wi, wo, h))", "v.pdf > 0"},
+      "(v.pdf > 0) & (!faceted | thin_facet_is_met(wi, wo, h))", "(v.pdf > 0)"},
      "BSDFs",
      check_bsdfs},
     {{"metal's colour by Fresnel's own", "bsdfs/principled.cl", "v3 metal = schlick(b.base_color,",

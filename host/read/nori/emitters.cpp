@@ -181,8 +181,8 @@ void check_value(const Properties &properties, const Parameter &parameter, const
     warn_of_scale(value, properties.place_of(parameter.xml_name));
 }
 void check_value(const Properties &properties, const Parameter &parameter, Vec3 value) {
-    properties.check(parameter.type == ParameterType::POINT || length(value) > 0, parameter.xml_name,
-                     fmt::format("must not be 0: {}", parameter.meaning));
+    properties.check(parameter.type == ParameterType::POINT || parameter.initial == 0 || length(value) > 0,
+                     parameter.xml_name, fmt::format("must not be 0: {}", parameter.meaning));
 }
 
 } // namespace
