@@ -57,7 +57,7 @@ TEST_CASE("What computes wrong is found", "[selftest][stat]") {
          "square(inverse_distance)), (real)(0.5f)", "lights: samples of delta lights"},
         {"lights", "emitters/point.cl", "v3_scale(color, square", "v3_scale(color, R(1.1) * square", "lights: power"},
         {"rays", "trace/one_lane/walk.cl", "near_x = inverse.x < 0", "near_x = inverse.x > 0", "tree: hits", true},
-        {"images", "integrators/steps.cl", "fabs(wo.z) * inverse_pdf", "inverse_pdf", "furnace"},
+        {"images", "integrators/steps.cl", "bsdf.cosine * inverse_pdf", "inverse_pdf", "furnace"},
     };
     for (const WrongKernel &kernel : kernels) {
         INFO(kernel.file << ": " << kernel.to);

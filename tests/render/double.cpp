@@ -116,7 +116,7 @@ TEST_CASE("Doubles at every width agree to far below a float", "[double]") {
 TEST_CASE("What makes single precision walk other paths is seen", "[double]") {
     if (!doubles())
         return;
-    const Mutant jump{"frames that jump on upright walls", "core/math.cl", "n.z < FRAME_JUMP ? (real)(-1) : (real)(1)",
+    const Mutant jump{"frames that jump on upright walls", "core/math.cl", "n.z < jump ? (real)(-1) : (real)(1)",
                       "copysign((real)(1), n.z)"};
     const Sources wrong = mutated(Sources::embedded(), jump);
     // Walls whose normals have z = 0 but for the last bit: turned and slanted, so that it is a difference of products

@@ -50,7 +50,7 @@ const std::vector<Control> lights = {
     {{"no cosine at the light", "emitters/area_light.cl", "inverse_pdf * fabs(v3_dot(normal, d)) *", "inverse_pdf *"},
      "triangle light",
      check_triangle_light},
-    {{"no cosine at the receiver", "integrators/steps.cl", "light.radiance), fabs(wo.z) * inverse_pdf)",
+    {{"no cosine at the receiver", "integrators/steps.cl", "light.radiance), bsdf.cosine * inverse_pdf)",
       "light.radiance), inverse_pdf)"},
      "triangle light",
      check_triangle_light},

@@ -87,8 +87,8 @@ TEST_CASE("With --vary each value is verified, and one that disagrees decides th
 
     // A wall that reflects nothing does not show the light samples' bias.
     const Mutant mutant{"light samples 50 % too bright", "integrators/steps.cl",
-                        "light.radiance), fabs(wo.z) * inverse_pdf",
-                        "light.radiance), R(1.5) * fabs(wo.z) * inverse_pdf"};
+                        "light.radiance), bsdf.cosine * inverse_pdf",
+                        "light.radiance), R(1.5) * bsdf.cosine * inverse_pdf"};
     const Outcome wrong = folder.verify("--vary a=0.6,0 --budget 4s --strategies 'lighting=bsdf;lighting=emitter'" +
                                         folder.wrong_kernels(mutant));
     INFO(wrong.out << wrong.err);
@@ -138,8 +138,8 @@ TEST_CASE("A bias of 2 % in one strategy is found, and the strategy is named", "
 TEST_CASE("A bias of 2 % of light sampling is found by the strategies chosen by default", "[verify][stat]") {
     const SceneFolder folder;
     const Mutant mutant{"light samples 2 % too bright", "integrators/steps.cl",
-                        "light.radiance), fabs(wo.z) * inverse_pdf",
-                        "light.radiance), R(1.02) * fabs(wo.z) * inverse_pdf"};
+                        "light.radiance), bsdf.cosine * inverse_pdf",
+                        "light.radiance), R(1.02) * bsdf.cosine * inverse_pdf"};
     const Outcome outcome = folder.verify("--budget 30s" + folder.wrong_kernels(mutant));
     INFO(outcome.out << outcome.err);
     CHECK(outcome.exit_code == exit_check_failed);

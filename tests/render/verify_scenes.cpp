@@ -17,8 +17,8 @@ const std::string light_hit = "v3_mul(path->throughput, light_met(scene, path, &
 const std::string heuristic = "1 / (1 + (CHOSEN(scene, mis, power) ? ratio * ratio : ratio))";
 
 const std::vector<Mutant> planted = {
-    {"light samples", "integrators/steps.cl", "light.radiance), fabs(wo.z) * inverse_pdf",
-     "light.radiance), R(1.02) * fabs(wo.z) * inverse_pdf"},
+    {"light samples", "integrators/steps.cl", "light.radiance), bsdf.cosine * inverse_pdf",
+     "light.radiance), R(1.02) * bsdf.cosine * inverse_pdf"},
     {"uniform directions", "bsdfs/diffuse.cl", "by_cosine ? (real)(1) : 2 * wo.z",
      "by_cosine ? (real)(1) : R(2.04) * wo.z"},
     {"cosine directions", "bsdfs/diffuse.cl", "by_cosine ? (real)(1) : 2 * wo.z",
