@@ -2,7 +2,7 @@
 import math
 
 from scenekit.images import png, random_number
-from scenekit.write import LICENCE
+from scenekit.mitsuba import scene_text, view
 
 FENCE = (128, 256)   # pixels of one bay: 1 wide, 2 high
 SETTS = 192          # pixels of a square of ROWS rows of setts
@@ -63,25 +63,7 @@ def setts_color(px, py):
     return (0.45 + 0.16 * shade, 0.43 + 0.13 * shade, 0.42 + 0.1 * shade)
 
 
-SCENE = """
-    <integrator type="path">
-        <integer name="max_depth" value="12"/>
-    </integrator>
-
-    <sensor type="perspective">
-        <float name="fov" value="44"/>
-        <transform name="to_world">
-            <lookat origin="-1.3, 1.55, 7.4" target="0.1, 1.02, 0" up="0, 1, 0"/>
-        </transform>
-        <film type="hdrfilm">
-            <integer name="width" value="480"/>
-            <integer name="height" value="360"/>
-        </film>
-        <sampler type="multijitter">
-            <integer name="sample_count" value="64"/>
-        </sampler>
-    </sensor>
-
+SCENE = view("-1.3, 1.55, 7.4", "0.1, 1.02, 0", 44, depth=12) + """
     <!-- The sky after sunset. -->
     <emitter type="constant">
         <rgb name="radiance" value="0.16, 0.22, 0.36"/>
@@ -210,9 +192,8 @@ SCENE = """
 
 
 def files():
-    text = (f'<?xml version="1.0" encoding="utf-8"?>\n<!-- {LICENCE}. Written by scripts/make_scenes.py. -->\n'
-            f'<scene version="3.0.0">{SCENE}</scene>\n')
-    return {"fence.xml": text,
+    return {"fence.xml": scene_text(
+                "A yard at dusk behind a fence that a mask cuts out, in the format of Mitsuba 3: a blend, and a map of normals.", SCENE),
             "textures/fence.png": png(*FENCE, opacity),
             "textures/setts.png": png(SETTS, SETTS, setts_color),
             "textures/setts_normals.png": png(SETTS, SETTS, setts_normal)}

@@ -39,25 +39,30 @@ def ply_text(surface, comment):
     return "\n".join(lines) + "\n"
 
 
-SHAPES = """
+def view(origin, target, fov, depth=16, sampler="multijitter", spp=64, width=480, height=360):
+    """The integrator and the sensor of a scene; depth: most segments of a path."""
+    return f"""
     <integrator type="path">
-        <integer name="max_depth" value="16"/>
+        <integer name="max_depth" value="{depth}"/>
     </integrator>
 
     <sensor type="perspective">
-        <float name="fov" value="41.5"/>
+        <float name="fov" value="{fov}"/>
         <transform name="to_world">
-            <lookat origin="0.6, 3, 9.2" target="0.05, 0.85, 0" up="0, 1, 0"/>
+            <lookat origin="{origin}" target="{target}" up="0, 1, 0"/>
         </transform>
         <film type="hdrfilm">
-            <integer name="width" value="480"/>
-            <integer name="height" value="360"/>
+            <integer name="width" value="{width}"/>
+            <integer name="height" value="{height}"/>
         </film>
-        <sampler type="multijitter">
-            <integer name="sample_count" value="64"/>
+        <sampler type="{sampler}">
+            <integer name="sample_count" value="{spp}"/>
         </sampler>
     </sensor>
+"""
 
+
+SHAPES = view("0.6, 3, 9.2", "0.05, 0.85, 0", 41.5) + """
     <bsdf type="twosided" id="plaster">
         <bsdf type="diffuse">
             <rgb name="reflectance" value="0.62, 0.6, 0.57"/>
@@ -184,25 +189,7 @@ SHAPES = """
     </shape>
 """
 
-SKY = """
-    <integrator type="path">
-        <integer name="max_depth" value="12"/>
-    </integrator>
-
-    <sensor type="perspective">
-        <float name="fov" value="32"/>
-        <transform name="to_world">
-            <lookat origin="3.9, 2.6, 8.4" target="0.25, 1.3, 0" up="0, 1, 0"/>
-        </transform>
-        <film type="hdrfilm">
-            <integer name="width" value="480"/>
-            <integer name="height" value="360"/>
-        </film>
-        <sampler type="independent">
-            <integer name="sample_count" value="64"/>
-        </sampler>
-    </sensor>
-
+SKY = view("3.9, 2.6, 8.4", "0.25, 1.3, 0", 32, depth=12, sampler="independent") + """
     <emitter type="constant">
         <rgb name="radiance" value="0.62, 0.83, 1.15"/>
     </emitter>
@@ -253,25 +240,7 @@ SKY = """
 """
 
 
-SKY_MAP = """
-    <integrator type="path">
-        <integer name="max_depth" value="16"/>
-    </integrator>
-
-    <sensor type="perspective">
-        <float name="fov" value="34"/>
-        <transform name="to_world">
-            <lookat origin="3.3, 1.5, 8.2" target="0.1, 1.45, 0" up="0, 1, 0"/>
-        </transform>
-        <film type="hdrfilm">
-            <integer name="width" value="480"/>
-            <integer name="height" value="360"/>
-        </film>
-        <sampler type="independent">
-            <integer name="sample_count" value="64"/>
-        </sampler>
-    </sensor>
-
+SKY_MAP = view("3.3, 1.5, 8.2", "0.1, 1.45, 0", 34, sampler="independent") + """
     <!-- The first row of the map is up, +y. -->
     <emitter type="envmap">
         <string name="filename" value="textures/evening_sky.exr"/>
@@ -332,25 +301,7 @@ SKY_MAP = """
 
 PREVIEW = """
     <default name="material" value="copper"/>
-
-    <integrator type="path">
-        <integer name="max_depth" value="16"/>
-    </integrator>
-
-    <sensor type="perspective">
-        <float name="fov" value="26"/>
-        <transform name="to_world">
-            <lookat origin="0, 2.3, 6.4" target="0, 0.98, 0" up="0, 1, 0"/>
-        </transform>
-        <film type="hdrfilm">
-            <integer name="width" value="384"/>
-            <integer name="height" value="384"/>
-        </film>
-        <sampler type="multijitter">
-            <integer name="sample_count" value="256"/>
-        </sampler>
-    </sensor>
-
+""" + view("0, 2.3, 6.4", "0, 0.98, 0", 26, spp=256, width=384, height=384) + """
     <!-- The sky, and a window for highlights. -->
     <emitter type="constant">
         <rgb name="radiance" value="0.35, 0.42, 0.52"/>

@@ -3,7 +3,7 @@ texture coordinates."""
 import math
 
 from scenekit.images import mix, noise, png, random_number
-from scenekit.mitsuba import scene_text
+from scenekit.mitsuba import scene_text, view
 from scenekit.shapes import Surface, lathe
 from scenekit.vec import norm
 from scenekit.write import obj_text
@@ -184,28 +184,6 @@ def bitmap(name, file, *properties, kind="bitmap"):
     lines = "".join(f"\n            {line}" for line in (f'<string name="filename" value="textures/{file}.png"/>', *properties))
     return f"""<texture type="{kind}" name="{name}">{lines}
         </texture>"""
-
-
-def view(origin, target, fov, depth=16):
-    return f"""
-    <integrator type="path">
-        <integer name="max_depth" value="{depth}"/>
-    </integrator>
-
-    <sensor type="perspective">
-        <float name="fov" value="{fov}"/>
-        <transform name="to_world">
-            <lookat origin="{origin}" target="{target}" up="0, 1, 0"/>
-        </transform>
-        <film type="hdrfilm">
-            <integer name="width" value="480"/>
-            <integer name="height" value="360"/>
-        </film>
-        <sampler type="multijitter">
-            <integer name="sample_count" value="64"/>
-        </sampler>
-    </sensor>
-"""
 
 
 TEXTURED_ROOM = view("-0.3, 2.1, 6.1", "0.1, 1.35, 0", 46) + f"""
