@@ -3,6 +3,7 @@
 #include "read/nori/parsers.h"
 #include "scene/metals.h"
 #include "support/kernel_checks.h"
+#include "support/mitsuba_pairs.h"
 #include "support/probe.h"
 
 #include <catch2/catch.hpp>
@@ -15,35 +16,6 @@ using namespace opal;
 using namespace opal::test;
 
 namespace {
-
-struct Pair {
-    Vec3 wi, wo;
-};
-const Pair pairs[] = {
-    {{0, 0, 1}, {0, 0, 1}},
-    {{0, 0, 1}, {0.5, 0, 0.8660254}},
-    {{0.5, 0, 0.8660254}, {-0.5, 0, 0.8660254}},
-    {{0.5, 0, 0.8660254}, {-0.5295965, 0.01849392, 0.8480481}},
-    {{0.5, 0, 0.8660254}, {0.5, 0, 0.8660254}},
-    {{0.8660254, 0, 0.5}, {-0.8660254, 0, 0.5}},
-    {{0.8660254, 0, 0.5}, {-0.7544065, 0.1330222, 0.6427876}},
-    {{0.8660254, 0, 0.5}, {0, 0.3420201, 0.9396926}},
-    {{0.9254166, 0.3368241, 0.1736482}, {-0.9076734, -0.3303661, 0.258819}},
-    {{0.9254166, 0.3368241, 0.1736482}, {-0.1710101, 0.9698463, 0.1736482}},
-    {{0.2418448, 0.664463, 0.7071068}, {-0.2418448, -0.664463, 0.7071068}},
-    {{0.2418448, 0.664463, 0.7071068}, {-0.3213938, -0.5566704, 0.7660444}},
-    {{-0.2432103, -0.08852133, 0.9659258}, {0.9254166, 0.1631759, 0.3420201}},
-    {{0.9961947, 0, 0.08715574}, {0, 0.08715574, 0.9961947}},
-    {{0, 0, 1}, {0, 0, -1}},
-    {{0.5, 0, 0.8660254}, {-0.3370953, 0, -0.9414705}},
-    {{0.5, 0, 0.8660254}, {-0.5, 0, -0.8660254}},
-    {{0.8660254, 0, 0.5}, {-0.5735764, 0, -0.819152}},
-    {{0.2418448, 0.664463, 0.7071068}, {-0.25, -0.4330127, -0.8660254}},
-    {{0.5, 0, -0.8660254}, {-0.5, 0, 0.8660254}},
-    {{0.3420201, 0, -0.9396926}, {-0.5150381, 0, -0.8571673}},
-    {{0.1330222, 0.1116189, -0.9848078}, {-0.1982669, -0.1663657, -0.9659258}},
-    {{0.8660254, 0, -0.5}, {-0.8660254, 0, 0.5}},
-};
 
 struct Value {
     size_t pair;
@@ -303,15 +275,15 @@ TEST_CASE("f cos and densities of facets are Mitsuba's", "[mitsuba_facets]") {
     for (unsigned id = 0; id < bsdfs.size(); id++) {
         const RoughMaterial &material = rough_materials[id];
         auto value = material.values.begin();
-        for (size_t i = 0; i < std::size(pairs); i++) {
+        for (size_t i = 0; i < std::size(mitsuba_pairs); i++) {
             INFO(material.type << " " << material.properties << ", pair " << i);
-            const Planes drawn = probe.bsdf_eval(id, pairs[i].wi, std::span(&pairs[i].wo, 1));
+            const Planes drawn = probe.bsdf_eval(id, mitsuba_pairs[i].wi, std::span(&mitsuba_pairs[i].wo, 1));
             const bool is_known = value != material.values.end() && value->pair == i;
             for (size_t c = 0; c < 3; c++) {
-                const double f_cos = drawn.at(EVAL_R + c, 0) * std::abs(pairs[i].wo.z);
+                const double f_cos = drawn.at(EVAL_R + c, 0) * std::abs(mitsuba_pairs[i].wo.z);
                 CHECK(f_cos == Approx(is_known ? value->f_cos[c % value->f_cos.size()] : 0).epsilon(1e-5).margin(1e-9));
             }
-            const double pdf = is_known ? value->pdf * exact_over_fit(bsdfs[id], pairs[i].wi) : 0;
+            const double pdf = is_known ? value->pdf * exact_over_fit(bsdfs[id], mitsuba_pairs[i].wi) : 0;
             CHECK(drawn.at(EVAL_PDF, 0) == Approx(pdf).epsilon(1e-5).margin(1e-9));
             value += is_known;
         }

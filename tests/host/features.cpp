@@ -154,7 +154,6 @@ TEST_CASE("features are what the scene and the strategy ask for, each with a rea
         const Features brushed = with(bsdf_roughconductor_record{.alpha_u = 0.2});
         CHECK(brushed[FEATURE_beckmann]);
         CHECK(brushed[FEATURE_tangents]);
-        CHECK(brushed[FEATURE_tangents]);
         CHECK(brushed[FEATURE_uv]);
         CHECK_FALSE(with(bsdf_dielectric_record{})[FEATURE_tinted_glass]);
         CHECK(with(bsdf_thindielectric_record{.specular_transmittance = 0.5})[FEATURE_tinted_glass]);

@@ -3,19 +3,17 @@
 #include "read/nori/parsers.h"
 #include "support/kernel_checks.h"
 #include "support/kernels.h"
+#include "support/mitsuba_pairs.h"
 #include "support/probe.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <span>
 
 namespace opal::test {
 
 namespace {
-
-struct Pair {
-    Vec3 wi, wo;
-};
 
 // A material; f cos and density of red for each of some pairs of directions.
 struct Row {
@@ -60,7 +58,7 @@ void raise(Bsdf &bsdf) {
 }
 
 // All rows in one kernel, at all tested widths.
-Findings rows_findings(const std::vector<Row> &rows, const std::vector<Pair> &pairs, const Sources &sources) {
+Findings rows_findings(const std::vector<Row> &rows, std::span<const DirectionPair> pairs, const Sources &sources) {
     std::vector<Bsdf> bsdfs;
     for (const Row &row : rows) {
         const XmlDocument document("a material", row.xml);
@@ -88,20 +86,6 @@ Findings rows_findings(const std::vector<Row> &rows, const std::vector<Pair> &pa
 }
 
 Findings single_findings(const Sources &sources) {
-    const std::vector<Pair> pairs = {{{0, 0, 1}, {0, 0, 1}},
-                                     {{0, 0, 1}, {0.5, 0, 0.8660254}},
-                                     {{0.5, 0, 0.8660254}, {-0.5, 0, 0.8660254}},
-                                     {{0.5, 0, 0.8660254}, {-0.5295965, 0.01849392, 0.8480481}},
-                                     {{0.5, 0, 0.8660254}, {0.5, 0, 0.8660254}},
-                                     {{0.8660254, 0, 0.5}, {-0.8660254, 0, 0.5}},
-                                     {{0.8660254, 0, 0.5}, {-0.7544065, 0.1330222, 0.6427876}},
-                                     {{0.8660254, 0, 0.5}, {0, 0.3420201, 0.9396926}},
-                                     {{0.9254166, 0.3368241, 0.1736482}, {-0.9076734, -0.3303661, 0.258819}},
-                                     {{0.9254166, 0.3368241, 0.1736482}, {-0.1710101, 0.9698463, 0.1736482}},
-                                     {{0.2418448, 0.664463, 0.7071068}, {-0.2418448, -0.664463, 0.7071068}},
-                                     {{0.2418448, 0.664463, 0.7071068}, {-0.3213938, -0.5566704, 0.7660444}},
-                                     {{-0.2432103, -0.08852133, 0.9659258}, {0.9254166, 0.1631759, 0.3420201}},
-                                     {{0.9961947, 0, 0.08715574}, {0, 0.08715574, 0.9961947}}};
     const std::vector<Row> rows = {
         {"<bsdf type='blendbsdf'><float name='weight' value='0.25'/>" + red + green + "</bsdf>",
          {0.1989437, 0.1722903, 0.1722903, 0.1687138, 0.1722903, 0.09947184, 0.1278785, 0.1869459, 0.05149041,
@@ -129,13 +113,14 @@ Findings single_findings(const Sources &sources) {
          {0.2778436, 0.1711587, 0.3100805, 0.3079126, 0.1711587, 0.2592316, 0.2741581, 0.2373306, 0, 0.09185642,
           0.2762168, 0.296156, 0, 0.2828403}},
     };
-    return rows_findings(rows, pairs, sources);
+    return rows_findings(rows, std::span(mitsuba_pairs).first(rows.front().f_cos.size()), sources);
 }
 
 Findings nest_findings(const Sources &sources) {
-    const std::vector<Pair> pairs = {{{0.3, 0.2, 0.9}, {0.1, -0.5, 0.7}},   {{-0.9, 0.3, 0.2}, {0.1, -0.5, 0.7}},
-                                     {{0.3, 0.2, -0.9}, {0.1, -0.5, -0.7}}, {{-0.9, 0.3, -0.2}, {0.1, -0.5, -0.7}},
-                                     {{0.9, 0.3, -0.2}, {0.1, -0.5, -0.7}}, {{0.6, -0.7, 0.3}, {-0.4, 0.8, 0.5}}};
+    const std::vector<DirectionPair> pairs = {
+        {{0.3, 0.2, 0.9}, {0.1, -0.5, 0.7}},   {{-0.9, 0.3, 0.2}, {0.1, -0.5, 0.7}},
+        {{0.3, 0.2, -0.9}, {0.1, -0.5, -0.7}}, {{-0.9, 0.3, -0.2}, {0.1, -0.5, -0.7}},
+        {{0.9, 0.3, -0.2}, {0.1, -0.5, -0.7}}, {{0.6, -0.7, 0.3}, {-0.4, 0.8, 0.5}}};
     const auto one = [](const std::string &within) { // about (0.6, -0.3, 0.7)
         return "<bsdf type='normalmap'><color name='normalmap' value='0.80942637 0.34528681 0.86099744'/>" + within +
                "</bsdf>";

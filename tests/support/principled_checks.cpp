@@ -5,6 +5,7 @@
 #include "scene/principled_albedo.h"
 #include "stats/hypothesis.h"
 #include "support/kernel_checks.h"
+#include "support/mitsuba_pairs.h"
 #include "support/probe.h"
 
 #include <fmt/format.h>
@@ -18,9 +19,6 @@ namespace opal::test {
 
 namespace {
 
-struct Pair {
-    Vec3 wi, wo;
-};
 struct Row {
     Color f_cos;
     double pdf;
@@ -30,29 +28,6 @@ struct Known {
     std::vector<Row> rows; // of the pairs
 };
 
-constexpr Pair pairs[] = {{{0, 0, 1}, {0, 0, 1}},
-                          {{0, 0, 1}, {0.5, 0, 0.8660254}},
-                          {{0.5, 0, 0.8660254}, {-0.5, 0, 0.8660254}},
-                          {{0.5, 0, 0.8660254}, {-0.5295965, 0.01849392, 0.8480481}},
-                          {{0.5, 0, 0.8660254}, {0.5, 0, 0.8660254}},
-                          {{0.8660254, 0, 0.5}, {-0.8660254, 0, 0.5}},
-                          {{0.8660254, 0, 0.5}, {-0.7544065, 0.1330222, 0.6427876}},
-                          {{0.8660254, 0, 0.5}, {0, 0.3420201, 0.9396926}},
-                          {{0.9254166, 0.3368241, 0.1736482}, {-0.9076734, -0.3303661, 0.258819}},
-                          {{0.9254166, 0.3368241, 0.1736482}, {-0.1710101, 0.9698463, 0.1736482}},
-                          {{0.2418448, 0.664463, 0.7071068}, {-0.2418448, -0.664463, 0.7071068}},
-                          {{0.2418448, 0.664463, 0.7071068}, {-0.3213938, -0.5566704, 0.7660444}},
-                          {{-0.2432103, -0.08852133, 0.9659258}, {0.9254166, 0.1631759, 0.3420201}},
-                          {{0.9961947, 0, 0.08715574}, {0, 0.08715574, 0.9961947}},
-                          {{0, 0, 1}, {0, 0, -1}},
-                          {{0.5, 0, 0.8660254}, {-0.3370953, 0, -0.9414705}},
-                          {{0.5, 0, 0.8660254}, {-0.5, 0, -0.8660254}},
-                          {{0.8660254, 0, 0.5}, {-0.5735764, 0, -0.819152}},
-                          {{0.2418448, 0.664463, 0.7071068}, {-0.25, -0.4330127, -0.8660254}},
-                          {{0.5, 0, -0.8660254}, {-0.5, 0, 0.8660254}},
-                          {{0.3420201, 0, -0.9396926}, {-0.5150381, 0, -0.8571673}},
-                          {{0.1330222, 0.1116189, -0.9848078}, {-0.1982669, -0.1663657, -0.9659258}},
-                          {{0.8660254, 0, -0.5}, {-0.8660254, 0, 0.5}}};
 const std::vector<Known> known_materials = {
     {"<bsdf type='principled'></bsdf>",
      {{{0.2100845, 0.2100845, 0.2100845}, 0.7957747},
@@ -399,9 +374,9 @@ double error_of(double value, double known) {
 std::array<double, 2> errors_of(const Known &known, MathMode math, const Sources &sources) {
     KernelProbe probe = probe_in(math, bsdf_of(known.xml), sources);
     std::array<double, 2> errors{};
-    for (size_t i = 0; i < std::size(pairs); i++) {
-        const Planes drawn = probe.bsdf_eval(0, pairs[i].wi, std::span(&pairs[i].wo, 1));
-        const double cosine = std::abs(pairs[i].wo.z);
+    for (size_t i = 0; i < std::size(mitsuba_pairs); i++) {
+        const Planes drawn = probe.bsdf_eval(0, mitsuba_pairs[i].wi, std::span(&mitsuba_pairs[i].wo, 1));
+        const double cosine = std::abs(mitsuba_pairs[i].wo.z);
         for (size_t c = 0; c < 3; c++)
             errors[0] = std::max(errors[0], error_of(drawn.at(EVAL_R + c, 0) * cosine, known.rows[i].f_cos[c]));
         if (known.rows[i].f_cos[0] > 0) // Mitsuba has a density where nothing is reflected, too
@@ -429,7 +404,7 @@ double oren_nayar_f(double albedo, double r, Vec3 wi, Vec3 wo) {
 double oren_nayar_error(const Sources &sources, double albedo, double alpha) {
     KernelProbe probe = probe_in(MathMode::precise, bsdf_oren_nayar_record{.albedo = albedo, .alpha = alpha}, sources);
     double error = 0;
-    for (const Pair &pair : pairs) {
+    for (const DirectionPair &pair : mitsuba_pairs) {
         const double f = probe.bsdf_eval(0, pair.wi, std::span(&pair.wo, 1)).at(EVAL_R, 0);
         const bool is_front = pair.wi.z > 0 && pair.wo.z > 0;
         error =
@@ -457,7 +432,7 @@ Findings check_principled(const Sources &sources, unsigned seed) {
         if (math == MathMode::double_precision && !device().info.fp64)
             continue;
         for (const Known &known : known_materials) {
-            REQUIRE(known.rows.size() == std::size(pairs));
+            REQUIRE(known.rows.size() == std::size(mitsuba_pairs));
             const auto [f, pdf] = errors_of(known, math, sources);
             // Mitsuba's clear coat of alpha 0.02 loses digits in 1 + (alpha^2 - 1) cos^2, in single precision.
             const double limit = known.xml.find("'clearcoatGloss' value='0.8'") != std::string::npos ? 2e-4 : 1e-4;
