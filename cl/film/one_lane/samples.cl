@@ -1,12 +1,5 @@
 // one_lane/samples: where a pass leaves its samples until they are added to the film: sample after sample, r, g and b
-// together.
-//   channel c of a pixel's sample is the float
-//   SAMPLE_WORD(pixel, sample, pass_samples) + SAMPLE_CHANNEL(c, pass_samples)
-//   uint load_colors(samples, pixel, sample, pass_samples, colors)
-//       reads the colours of each lane's pixel, of samples from `sample` on, into colors[0], colors[1] ...
-//       (LANES at the most). Returns how many.
-//   void fetch_next(samples, pixel, s, pass_samples)
-//       prefetches what the work-item reads that comes after the one of `pixel`, its first; a part of it each s
+// together. The functions are those of many_lanes/samples.cl.
 #include "core/lanes.cl"
 #include "shared/film.h"
 

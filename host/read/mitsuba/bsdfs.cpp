@@ -196,8 +196,7 @@ Bsdf parse_blendbsdf(Importer &importer, Object &object) {
 // Sets what normalmap and bumpmap have in common: the two flags and the material within.
 void set_perturbation(Importer &importer, Object &object, Bsdf &bsdf) {
     for (const char *name : {"flip_invalid_normals", "use_shadowing_function"})
-        bsdf.words[find_row(bsdf_parameters(bsdf.kind()), "parameter", name).word] =
-            object.boolean(name).value_or(true);
+        set_flag(bsdf, name, object.boolean(name).value_or(true));
     bsdf.children = parse_children(importer, object, 1, 1);
 }
 
@@ -217,8 +216,7 @@ Bsdf parse_normalmap(Importer &importer, Object &object) {
 
 Bsdf parse_bumpmap(Importer &importer, Object &object) {
     Bsdf bsdf = bsdf_bumpmap_record{.height = 1};
-    const double scale = object.number("scale").value_or(1);
-    bsdf.words[find_row(bsdf_parameters(BSDF_bumpmap), "parameter", "scale").word] = std::bit_cast<uint>(float(scale));
+    set_number(bsdf, "scale", object.number("scale").value_or(1));
     set_perturbation(importer, object, bsdf);
     const auto textures = object.children("texture");
     if (textures.size() != 1) {
@@ -228,7 +226,7 @@ Bsdf parse_bumpmap(Importer &importer, Object &object) {
     if (const std::optional<Texture> &texture = importer.texture(*textures.front())) {
         if (!std::holds_alternative<BitmapTexture>(*texture))
             textures.front()->mistake("a bumpmap needs a texture of type bitmap, which has slopes");
-        bsdf.textures[find_row(bsdf_parameters(BSDF_bumpmap), "parameter", "height").texture_word] = *texture;
+        bsdf.textures[bsdf_parameter(BSDF_bumpmap, "height")->texture_word] = *texture;
     }
     return bsdf;
 }
