@@ -34,12 +34,6 @@ int wrapped_texel(double texel, int n, uint wrap) {
 }
 
 Color texel_at(const BitmapTexture &texture, double x, double y) {
-    static const std::vector<double> decoded = [] {
-        std::vector<double> table;
-        for (int byte = 0; byte < 256; byte++)
-            table.push_back(srgb_decode(byte / 255.0));
-        return table;
-    }();
     const Picture &picture = *texture.picture;
     const bool encoded = picture.encoded && !texture.raw;
     const auto first = (std::size_t(wrapped_texel(y, picture.height, texture.wrap)) * std::size_t(picture.width) +
@@ -47,7 +41,7 @@ Color texel_at(const BitmapTexture &texture, double x, double y) {
                        std::size_t(picture.channels);
     const auto value = [&](std::size_t i) {
         if (!picture.bytes.empty())
-            return encoded ? decoded[picture.bytes[i]] : picture.bytes[i] / 255.0;
+            return decoded_bytes(encoded)[picture.bytes[i]];
         return encoded ? srgb_decode(picture.floats[i]) : double(picture.floats[i]);
     };
     if (picture.channels == 1)

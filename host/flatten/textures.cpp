@@ -28,15 +28,6 @@ void store_map(const UvTransform &map, float (&words)[2][3]) {
 
 constexpr uint byte_values = 256;
 
-// What bytes mean: as numbers, and as sRGB means them.
-using DecodedBytes = std::array<double, byte_values>;
-DecodedBytes decoded_bytes(bool encoded) {
-    DecodedBytes values;
-    for (uint byte = 0; byte < byte_values; byte++)
-        values[byte] = encoded ? srgb_decode(byte / 255.0) : byte / 255.0;
-    return values;
-}
-
 double mean_of(const CheckerboardTexture &texture) {
     return (luminance(texture.color0) + luminance(texture.color1)) / 2;
 }
@@ -44,7 +35,7 @@ double mean_of(const CheckerboardTexture &texture) {
 double mean_of(const BitmapTexture &texture) {
     const Picture &picture = *texture.picture;
     const bool encoded = picture.encoded && !texture.raw;
-    const DecodedBytes bytes = decoded_bytes(encoded);
+    const auto &bytes = decoded_bytes(encoded);
     const auto channels = std::size_t(picture.channels);
     const std::size_t values = std::max(picture.bytes.size(), picture.floats.size());
     Color sum{};

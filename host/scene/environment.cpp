@@ -22,12 +22,15 @@ LargeVector<float> decoded(Picture &picture) {
         return std::move(picture.floats);
     const std::size_t pixels = std::size_t(picture.width) * std::size_t(picture.height);
     const auto channels = std::size_t(picture.channels);
+    const auto &bytes = decoded_bytes(picture.encoded);
     LargeVector<float> values(3 * pixels);
     for (std::size_t i = 0; i < pixels; i++)
         for (std::size_t c = 0; c < 3; c++) {
             const std::size_t at = channels * i + c % channels;
-            const double value = picture.bytes.empty() ? double(picture.floats[at]) : picture.bytes[at] / 255.0;
-            values[3 * i + c] = float(picture.encoded ? srgb_decode(value) : value);
+            const double value = !picture.bytes.empty() ? bytes[picture.bytes[at]]
+                                 : picture.encoded      ? srgb_decode(picture.floats[at])
+                                                        : double(picture.floats[at]);
+            values[3 * i + c] = float(value);
         }
     return values;
 }
