@@ -23,7 +23,8 @@ TEST_CASE("All cases of tests/cases/conformance pass", "[conformance][stat]") {
         if (entry.path().extension() == ".xml")
             files += entry.path().string() + " ";
     REQUIRE_FALSE(files.empty());
-    for (const char *options : {"--significance 1e-4", "--significance 1e-4 --lanes 1 --seed 7"}) {
+    // By the kernel for all scenes, and by kernels of each scene.
+    for (const char *options : {"--significance 1e-4", "--significance 1e-4 --lanes 1 --seed 7 --specialise on"}) {
         const Outcome outcome = run_tests(files + options);
         INFO(outcome.out << outcome.err);
         CHECK(outcome.exit_code == 0);

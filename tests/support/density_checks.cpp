@@ -1,4 +1,5 @@
 // What is drawn against its density; BSDFs, emitters and the functions below them against formulas in double.
+#include "base/error.h"
 #include "extremes/scenes.h"
 #include "selftest/checks.h"
 #include "support/cases.h"
@@ -52,6 +53,18 @@ stats::Sample albedo_of(KernelProbe &probe, unsigned id, Vec3 wi, unsigned seed)
     for (size_t i = 0; i < drawn.count; i++)
         moments.add(luminance({drawn.at(BSDF_WEIGHT_R, i), drawn.at(BSDF_WEIGHT_G, i), drawn.at(BSDF_WEIGHT_B, i)}));
     return moments.sample();
+}
+
+// Those of the cases with these names.
+template <class Case> std::vector<Case> named(const std::vector<Case> &cases, const std::vector<std::string> &names) {
+    std::vector<Case> found;
+    for (const std::string &name : names) {
+        const auto place = std::find_if(cases.begin(), cases.end(), [&](const Case &c) { return c.name == name; });
+        if (place == cases.end())
+            throw Error("tests/cases has no case " + name);
+        found.push_back(*place);
+    }
+    return found;
 }
 
 // The meshes in one scene, each in a column of the unit square.
@@ -139,10 +152,16 @@ Findings check_materials(const std::vector<Material> &materials, const Sources &
 }
 
 Findings check_bsdfs(const Sources &sources, unsigned seed) { return check_materials(bsdf_cases(), sources, seed); }
+Check check_of_bsdfs(std::vector<std::string> names) {
+    return [names = std::move(names)](const Sources &sources, unsigned seed) {
+        return check_materials(named(bsdf_cases(), names), sources, seed);
+    };
+}
 
 Findings check_albedos(const Sources &sources, unsigned seed) {
     Findings findings;
-    const std::vector<Material> materials = bsdf_cases();
+    const std::vector<Material> materials =
+        named(bsdf_cases(), {"microfacet_0.1", "microfacet_0", "diffuse", "diffuse_uniform", "mask_nested"});
     KernelProbe probe = probe_of(scene_of_materials(materials), device().info.native_lanes, sources);
     const auto judge = [&](const std::string &name, double degrees, double albedo) {
         const auto found = std::find_if(materials.begin(), materials.end(), [&](auto &m) { return m.name == name; });
@@ -284,6 +303,11 @@ Findings check_lights(const std::vector<LightCase> &cases, const Sources &source
 }
 
 Findings check_emitters(const Sources &sources, unsigned seed) { return check_lights(emitter_cases(), sources, seed); }
+Check check_of_emitters(std::vector<std::string> names) {
+    return [names = std::move(names)](const Sources &sources, unsigned seed) {
+        return check_lights(named(emitter_cases(), names), sources, seed);
+    };
+}
 
 Findings check_sphere_lights(const Sources &sources, unsigned seed) {
     Findings findings;

@@ -40,6 +40,10 @@ Findings check_skies(const Sources &sources, unsigned seed);   // environments t
 
 // material_findings of these materials.
 Findings check_materials(const std::vector<Material> &materials, const Sources &sources, unsigned seed);
+// check_bsdfs and check_emitters of some of their cases alone, which takes seconds instead of minutes. Throws where
+// there is no such case.
+Check check_of_bsdfs(std::vector<std::string> names);
+Check check_of_emitters(std::vector<std::string> names);
 // Directions to each light, and to all meshes in one scene, against their density, for all ways to choose emitters and
 // triangles; samples against rays of their direction; of emitters of scenes, what selftest asks.
 Findings check_lights(const std::vector<LightCase> &cases, const Sources &sources, unsigned seed);

@@ -27,6 +27,12 @@ struct Control {
     Check check;
 };
 
+// All of them. Mutants of single functions (kernel_mutants.cpp) ...
+extern const std::vector<Control> number_mutants, hit_mutants, density_mutants;
+// ... and of rendering (render_mutants.cpp).
+extern const std::vector<Control> furnace_mutants, light_mutants, strategy_mutants, passing_mutants, choice_mutants,
+    film_mutants;
+
 // Runs the controls: prints a line for each with the finding that killed it, and CHECKs that all are killed.
 void require_all_killed(const std::vector<Control> &controls, unsigned seed);
 
