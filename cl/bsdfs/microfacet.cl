@@ -1,11 +1,14 @@
-// microfacet: rough dielectric coat (Beckmann) over a diffuse base, one-sided, as Nori has it.
+// microfacet: rough dielectric coat over a diffuse base, one-sided, as Nori has it.
 //   <bsdf type="microfacet"> <float name="alpha" value="0.1"/> <color name="kd" value="0.5"/> ... </bsdf>
 // f = kd/pi + ks D(h) F(wi.h) G / (4 cos_i cos_o cos_h), with D the density of h over solid angle (hence the last
-// cosine), G Smith's rational approximation for Beckmann (Walter et al. 2007, section 5.2). At alpha 0 the coat is a
-// mirror that reflects ks F: it is sampled as a discrete direction, and eval and pdf are those of the base.
+// cosine), G Smith's rational approximation for Beckmann (Walter et al. 2007, section 5.2). With
+// <string name="distribution" value="ggx"/>, which Nori has not, D and G are those of GGX (microfacet_distribution.cl).
+// At alpha 0 the coat is a mirror that reflects ks F: it is sampled as a discrete direction, and eval and pdf are those
+// of the base.
 #include "bsdfs/fresnel.cl"
 #include "bsdfs/interface.cl"
 #include "bsdfs/microfacet.h"
+#include "bsdfs/microfacet_distribution.cl"
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "core/rng.cl"
@@ -16,12 +19,23 @@
 static real microfacet_ks(microfacet_bsdf b) { return 1 - v3_largest(b.kd); }
 static real microfacet_coat_chance(microfacet_bsdf b) { return drawn_probability(microfacet_ks(b)); }
 
-// Smith's shadowing of direction w by facets of normal h, in Walter's rational approximation for Beckmann.
-static real microfacet_g1(v3 w, v3 h, real alpha) {
+// The lanes whose facets are GGX's, and their distribution; directions are drawn of all facets, not of visible ones.
+static mask microfacet_is_ggx(microfacet_bsdf b) {
+    if (!OPAL_HAS_ggx) return NO_LANES;
+    return OPAL_HAS_beckmann ? b.ggx : ALL_LANES;
+}
+static MicrofacetDistribution microfacet_ggx(microfacet_bsdf b) {
+    MicrofacetDistribution m = {b.alpha, b.alpha, ALL_LANES, NO_LANES};
+    return m;
+}
+
+// Smith's shadowing of direction w by facets of normal h; Beckmann's in Walter's rational approximation.
+static real microfacet_g1(microfacet_bsdf b, v3 w, v3 h) {
     // Walter's a = cos / (alpha sin) is multiplied out, as sin is 0 at the pole.
-    real c = w.z, s = alpha * sqrt(sin2_theta(w));
+    real c = w.z, s = b.alpha * sqrt(sin2_theta(w));
     real rational = c * (R(3.535) * s + R(2.181) * c) / (s * s + c * (R(2.276) * s + R(2.577) * c));
     real g = c < R(1.6) * s ? rational : (real)(1);
+    if (OPAL_HAS_ggx) g = microfacet_is_ggx(b) ? fabs(c) * facet_masking(microfacet_ggx(b), w) : g;
     return v3_dot(w, h) * w.z > 0 ? g : (real)(0);
 }
 
@@ -30,7 +44,7 @@ static real microfacet_coat(microfacet_bsdf b, v3 wi, v3 wo, v3 h, real divisor)
     real cosine = v3_dot(wi, h);
     real sin2 = 1 - square(cosine);
     real f = fresnel_dielectric(fabs(cosine), real_max(sin2, (real)(0)), boundary_of(b.ext_ior, b.int_ior));
-    return microfacet_ks(b) * f * microfacet_g1(wi, h, b.alpha) * microfacet_g1(wo, h, b.alpha) / divisor;
+    return microfacet_ks(b) * f * microfacet_g1(b, wi, h) * microfacet_g1(b, wo, h) / divisor;
 }
 
 // The lanes whose coat is a mirror. Asked where OPAL_HAS_mirror_coats.
@@ -38,8 +52,10 @@ static mask microfacet_is_mirror(microfacet_bsdf b) { return b.alpha < (real)(MI
 
 // D, the density of h over solid angle; 0 of a mirror.
 static real microfacet_d(microfacet_bsdf b, v3 h) {
-    if (!OPAL_HAS_mirror_coats) return square_to_beckmann_pdf(h, b.alpha);
-    return microfacet_is_mirror(b) ? (real)(0) : square_to_beckmann_pdf(h, b.alpha);
+    real d = square_to_beckmann_pdf(h, b.alpha);
+    if (OPAL_HAS_ggx) d = microfacet_is_ggx(b) ? h.z * facet_density(microfacet_ggx(b), h) : d;
+    if (!OPAL_HAS_mirror_coats) return d;
+    return microfacet_is_mirror(b) ? (real)(0) : d;
 }
 
 static v3 microfacet_eval(microfacet_bsdf b, v3 wi, v3 wo) {
@@ -65,6 +81,7 @@ static BsdfSample microfacet_sample(microfacet_bsdf b, v3 wi, v2 u, real lobe) {
     real coat_chance = microfacet_coat_chance(b);
     mask coated = lobe < coat_chance;
     v3 facet = square_to_beckmann(u, b.alpha);
+    if (OPAL_HAS_ggx) facet = v3_pick(microfacet_is_ggx(b), facet_sample(microfacet_ggx(b), wi, u), facet);
     v3 mirrored = v3_sub(v3_scale(facet, 2 * v3_dot(wi, facet)), wi);
     v3 wo = v3_pick(coated, mirrored, square_to_cosine_hemisphere(u));
     v3 h = v3_pick(coated, facet, v3_normalize(v3_add(wi, wo)));

@@ -160,8 +160,8 @@ Check check_of_bsdfs(std::vector<std::string> names) {
 
 Findings check_albedos(const Sources &sources, unsigned seed) {
     Findings findings;
-    const std::vector<Material> materials =
-        named(bsdf_cases(), {"microfacet_0.1", "microfacet_0", "diffuse", "diffuse_uniform", "mask_nested"});
+    const std::vector<Material> materials = named(bsdf_cases(), {"microfacet_0.1", "microfacet_0", "microfacet_ggx_0.4",
+                                                                 "diffuse", "diffuse_uniform", "mask_nested"});
     KernelProbe probe = probe_of(scene_of_materials(materials), device().info.native_lanes, sources);
     const auto judge = [&](const std::string &name, double degrees, double albedo) {
         const auto found = std::find_if(materials.begin(), materials.end(), [&](auto &m) { return m.name == name; });
@@ -174,6 +174,8 @@ Findings check_albedos(const Sources &sources, unsigned seed) {
     for (const auto &[degrees, albedo] :
          {std::pair{0.0, 0.207084}, {45.0, 0.215892}, {60.0, 0.247775}, {80.0, 0.430824}, {85.0, 0.519005}})
         judge("microfacet_0.1", degrees, albedo);
+    for (const auto &[degrees, albedo] : {std::pair{0.0, 0.200756}, {60.0, 0.215542}, {80.0, 0.247710}})
+        judge("microfacet_ggx_0.4", degrees, albedo);
     for (double degrees : {0.0, 60.0, 85.0}) // luminance of kd + ks F
         judge("microfacet_0", degrees,
               luminance(Color{0.1, 0.2, 0.15}) + 0.8 * fresnel_reflectance(direction(degrees).z, 1.000277, 1.5));

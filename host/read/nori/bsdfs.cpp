@@ -45,8 +45,16 @@ void read_metal(Properties &properties, Bsdf &bsdf) {
     set_color(bsdf, "k", metal->k);
 }
 
-// What surfaces of facets have by other names: alpha, of both directions, and the distribution.
+// What surfaces of facets have by other names: the distribution, and alpha, of both directions.
 void read_facets(Properties &properties, Bsdf &bsdf) {
+    const Parameter *const ggx = bsdf_parameter(bsdf.kind(), "ggx");
+    if (!ggx)
+        return;
+    if (const std::optional<std::string> name = properties.string("distribution")) {
+        properties.check(*name == "ggx" || *name == "beckmann", "distribution",
+                         unknown_name("distribution", *name, {"beckmann", "ggx"}));
+        bsdf.words[ggx->word] = *name == "ggx";
+    }
     const Parameter *const u = bsdf_parameter(bsdf.kind(), "alpha_u"), *const v =
                                                                            bsdf_parameter(bsdf.kind(), "alpha_v");
     if (!u || !v)
@@ -58,11 +66,6 @@ void read_facets(Properties &properties, Bsdf &bsdf) {
         bsdf.words[u->word] = bsdf.words[v->word] = std::bit_cast<uint>(float(*alpha));
     } else if (properties.has("alpha_u") != properties.has("alpha_v")) {
         properties.mistake("alpha_u and alpha_v must be given together");
-    }
-    if (const std::optional<std::string> name = properties.string("distribution")) {
-        properties.check(*name == "ggx" || *name == "beckmann", "distribution",
-                         unknown_name("distribution", *name, {"beckmann", "ggx"}));
-        bsdf.words[bsdf_parameter(bsdf.kind(), "ggx")->word] = *name == "ggx";
     }
 }
 
