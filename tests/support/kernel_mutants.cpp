@@ -281,7 +281,7 @@ const std::vector<Control> density_mutants = {
     {{"reflection's density without its chance", "bsdfs/principled.cl", "(1 - below_transmission) * visible",
       "visible"},
      "BSDFs",
-     check_of_bsdfs({"principled", "principled_coat"})},
+     check_of_bsdfs({"principled_glass"})},
     {{"the coat's facets drawn by the square of their number", "bsdfs/principled.cl", "expm1(-2 * u.x *",
       "expm1(-2 * u.x * u.x *"},
      "BSDFs",
