@@ -19,6 +19,27 @@ static mask flag_parameter(global const uint *parameter, uints at) {
 }
 static uints bsdf_parameter(global const uint *parameter, uints at) { return GATHER_WORD(uints, parameter, at); }
 
+// Numbers that the host computed, from word `first` of the table on.
+typedef struct {
+    global const float *table;
+    uints first;
+} Curve;
+
+// In lanes that are not active it is the table's beginning.
+static Curve curve_parameter(global const uint *table, global const uint *parameter, uints at, mask active) {
+    Curve c = {(global const float *)table, uints_pick(active, GATHER_WORD(uints, parameter, at), (uints)(0))};
+    return c;
+}
+static real curve_number(Curve c, uints i) { return GATHER_WORD(real, c.table, c.first + i); }
+
+// The function of x, from 0 to 1, that numbers i to i + count - 1 give at even steps, linear in between.
+static real curve_at(Curve c, uint i, uint count, real x) {
+    real place = x * (real)(count - 1);
+    uints before = min(to_uints(real_max(place, (real)(0))), (uints)(count - 2));
+    real low = curve_number(c, i + before), high = curve_number(c, i + before + 1);
+    return mul_add(place - to_real(before), high - low, low);
+}
+
 // The same times what the records' textures say at `point`.
 static v3 textured_color(const Scene *scene, global const ColorParameter *parameter, uints at, TexturePoint point,
                          mask active) {
@@ -45,6 +66,7 @@ static v2 number_gradient(const Scene *scene, global const NumberParameter *para
 #define LANES_MEMBER_NUMBER real
 #define LANES_MEMBER_FLAG mask
 #define LANES_MEMBER_BSDF uints
+#define LANES_MEMBER_CURVE Curve
 
 // The places of parameters in their list: a bit each of OPAL_TEXTURED_*.
 #define PARAMETER_PLACE(type, name, xml, initial, range, meaning) PLACE_##name,
@@ -62,3 +84,4 @@ static v2 number_gradient(const Scene *scene, global const NumberParameter *para
     else lanes.name = number_parameter(&record->name, at);
 #define READ_FLAG(name) lanes.name = flag_parameter(&record->name, at);
 #define READ_BSDF(name) lanes.name = bsdf_parameter(&record->name, at);
+#define READ_CURVE(name) lanes.name = curve_parameter(scene->bsdfs, &record->name, at, active);

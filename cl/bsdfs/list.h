@@ -14,10 +14,12 @@
 #include "bsdfs/null.h"
 #include "bsdfs/oren_nayar.h"
 #include "bsdfs/phong.h"
+#include "bsdfs/plastic.h"
 #include "bsdfs/principled.h"
 #include "bsdfs/principledthin.h"
 #include "bsdfs/roughconductor.h"
 #include "bsdfs/roughdielectric.h"
+#include "bsdfs/roughplastic.h"
 #include "bsdfs/thindielectric.h"
 #include "bsdfs/twosided.h"
 #include "shared/glue.h"
@@ -48,7 +50,9 @@ enum {
     BSDF(roughdielectric, OPAL_SMOOTH | OPAL_TRANSMITS) \
     BSDF(principled, OPAL_SMOOTH | OPAL_TRANSMITS | OPAL_TANGENTS | OPAL_MANY_LOBES) \
     BSDF(principledthin, OPAL_SMOOTH | OPAL_TRANSMITS | OPAL_TANGENTS | OPAL_MANY_LOBES) \
-    BSDF(oren_nayar, OPAL_SMOOTH)
+    BSDF(oren_nayar, OPAL_SMOOTH) \
+    BSDF(plastic, OPAL_SMOOTH | OPAL_DISCRETE) \
+    BSDF(roughplastic, OPAL_SMOOTH)
 
 // BSDFs that lead to others, which are their parameters of type BSDF: BSDF(name, traits of its own). The others' traits
 // come to them.

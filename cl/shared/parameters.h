@@ -7,6 +7,8 @@
 //   NUMBER   a number
 //   FLAG     true or false
 //   BSDF     another BSDF, by the first word of its record
+//   CURVE    numbers that the host computes from the other ones, which no texture changes then; it has no name in the
+//            XML. By the first of its words, which lie among the records
 //   POINT, VECTOR   a position, a direction with its length, in world space; of emitters, whose records the host makes
 //   IMAGE, TRANSFORM   the file of a picture, a matrix; likewise
 // A range is AT_LEAST(x), ABOVE(x), BETWEEN(x, y) with both ends, INSIDE(x, y) without them, or ANY. REQUIRED in place
@@ -58,5 +60,6 @@ typedef struct NumberParameter {
 #define OPAL_MEMBER_NUMBER NumberParameter
 #define OPAL_MEMBER_FLAG uint
 #define OPAL_MEMBER_BSDF uint
+#define OPAL_MEMBER_CURVE uint
 
 #endif

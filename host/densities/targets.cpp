@@ -80,7 +80,7 @@ std::string example_value(ParameterType type) {
 
 // Whether the command line can say it.
 bool has_text(const Parameter &parameter) {
-    return parameter.type != ParameterType::BSDF && parameter.type != ParameterType::TRANSFORM;
+    return is_property(parameter.type) && parameter.type != ParameterType::TRANSFORM;
 }
 
 // An object as a scene would say it, so that defaults and checks are the scene's. BSDFs within it are diffuse.

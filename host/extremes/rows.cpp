@@ -124,6 +124,9 @@ SceneDescription metal_floor(double alpha) {
     return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4),
                        bsdf_roughconductor_record{.eta = 0.2, .k = 3.9, .alpha_u = alpha, .alpha_v = alpha, .ggx = 1});
 }
+SceneDescription plastic_floor(double alpha) {
+    return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4), bsdf_roughplastic_record{.alpha = alpha, .ggx = 1});
+}
 SceneDescription principled_floor(double roughness) {
     return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4), principled(roughness));
 }
@@ -469,6 +472,13 @@ const std::vector<StressRow> &stress_rows() {
          .promised_from = 1e-6,
          .promised_to = 1,
          .picture = metal_floor},
+        {.name = "plastic-alpha",
+         .stretched = "roughness of a floor of rough plastic, GGX",
+         .values = reversed(decades(-6, 0)),
+         .start = 1,
+         .promised_from = 1e-6,
+         .promised_to = 1,
+         .picture = plastic_floor},
         {.name = "glass-alpha",
          .stretched = "roughness of a cube of glass",
          .values = reversed(decades(-6, 0)),

@@ -321,6 +321,8 @@ bool has_general_kernel(unsigned feature) {
     case FEATURE_bsdf_principled:
     case FEATURE_bsdf_principledthin:
     case FEATURE_bsdf_oren_nayar:
+    case FEATURE_bsdf_plastic:
+    case FEATURE_bsdf_roughplastic:
     case FEATURE_beckmann:
     case FEATURE_ggx:
     case FEATURE_all_facets:

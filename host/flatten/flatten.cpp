@@ -7,6 +7,7 @@
 #include "flatten/face_list.h"
 #include "flatten/features.h"
 #include "flatten/geometry.h"
+#include "flatten/plastic_boundary.h"
 #include "flatten/store.h"
 #include "flatten/textures.h"
 #include "scene/filter.h"
@@ -14,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -119,6 +121,11 @@ public:
             }
         for (const auto &[word, texture] : bsdf.textures)
             words[word] = textures_.add(texture);
+        if (bsdf.is<bsdf_plastic_record>())
+            words[bsdf_parameter(BSDF_plastic, "boundary")->word] = add_boundary(bsdf.as<bsdf_plastic_record>());
+        if (bsdf.is<bsdf_roughplastic_record>())
+            words[bsdf_parameter(BSDF_roughplastic, "boundary")->word] =
+                add_boundary(bsdf.as<bsdf_roughplastic_record>());
         const auto [found, is_new] = known_.try_emplace(words, uint(table_.size()));
         if (is_new)
             table_.insert(table_.end(), words.begin(), words.end());
@@ -130,7 +137,18 @@ private:
     double scale_;
     TextureGatherer &textures_;
     LargeVector<uint> &table_;
-    std::map<std::vector<uint>, uint> known_; // first word of each record
+    std::map<std::vector<uint>, uint> known_;      // first word of each record
+    std::map<std::vector<uint>, uint> boundaries_; // and of the numbers of each plastic without its colours
+
+    template <class Plastic> uint add_boundary(Plastic plastic) {
+        plastic.diffuse_reflectance = plastic.specular_reflectance = 0;
+        plastic.nonlinear = 0;
+        const auto [found, is_new] = boundaries_.try_emplace(words_of(plastic), uint(table_.size()));
+        if (is_new)
+            for (const float number : plastic_boundary(plastic))
+                table_.push_back(std::bit_cast<uint>(number));
+        return found->second;
+    }
 };
 
 void gather_bsdfs(const SceneDescription &description, TextureGatherer &textures, FlatScene &scene) {

@@ -1,6 +1,7 @@
 #include "flatten/precision_warnings.h"
 
 #include "flatten/emitter_kinds.h"
+#include "flatten/plastic_boundary.h"
 #include "scene/principled_albedo.h"
 
 #include <fmt/format.h>
@@ -122,7 +123,10 @@ private:
             return check(bsdf.as<bsdf_thindielectric_record>(), place);
         case BSDF_roughconductor:
         case BSDF_roughdielectric:
+        case BSDF_roughplastic:
             return check_facets(bsdf, place);
+        case BSDF_plastic:
+            return check(bsdf.as<bsdf_plastic_record>(), place);
         case BSDF_microfacet:
             return check(bsdf.as<bsdf_microfacet_record>(), place);
         case BSDF_phong:
@@ -148,11 +152,28 @@ private:
     }
 
     void check_facets(const Bsdf &bsdf, const SourcePlace &place) {
-        for (const char *name : {"alpha_u", "alpha_v"})
-            if (const float alpha = std::bit_cast<float>(bsdf.words[bsdf_parameter(bsdf.kind(), name)->word]);
-                alpha < LEAST_ALPHA)
-                add_warning(place, "{} {:g} is below {:g}, the least roughness that was tested: that stands in for it",
-                            name, alpha, LEAST_ALPHA);
+        for (const char *name : {"alpha", "alpha_u", "alpha_v"})
+            if (const Parameter *const parameter = bsdf_parameter(bsdf.kind(), name))
+                if (const float alpha = std::bit_cast<float>(bsdf.words[parameter->word]); alpha < LEAST_ALPHA)
+                    add_warning(place,
+                                "{} {:g} is below {:g}, the least roughness that was tested: that stands in for it",
+                                name, alpha, LEAST_ALPHA);
+    }
+
+    // The fit of the reflectance from inside leaves the base too much light.
+    void check(const bsdf_plastic_record &plastic, const SourcePlace &place) {
+        constexpr double told = 1.002; // up to an index of 1.9 even a white base stays below it
+        if (plastic.int_ior.value == plastic.ext_ior.value)
+            add_warning(place, "intIOR and extIOR are both {:g}: the coat reflects nothing", plastic.int_ior.value);
+        const double eta = double(plastic.ext_ior.value) / plastic.int_ior.value;
+        const double albedo = largest(plastic.diffuse_reflectance);
+        const double back = (plastic.nonlinear ? albedo : 1) * diffuse_reflectance_fit(eta);
+        const double leaving = albedo * (1 - diffuse_reflectance(eta)) / (1 - back);
+        if (leaving > told)
+            add_warning(place,
+                        "{:.3f} of the light that enters leaves, as in Mitsuba: its formula for light that is "
+                        "reflected inside is a fit for indices below 2",
+                        leaving);
     }
 
     void check(const bsdf_microfacet_record &microfacet, const SourcePlace &place) {

@@ -2,6 +2,8 @@
 
 #include "scene/parameters.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 
@@ -50,18 +52,36 @@ void set_color(Bsdf &bsdf, std::string_view name, const Color &color) {
 }
 
 bool has_equal_indices(const Bsdf &bsdf) {
-    if (!bsdf.is<bsdf_roughdielectric_record>())
+    if (!bsdf.is<bsdf_roughdielectric_record>() && !bsdf.is<bsdf_roughplastic_record>())
         return false;
-    const auto glass = bsdf.as<bsdf_roughdielectric_record>();
-    return glass.int_ior.value == glass.ext_ior.value;
+    return bsdf.words[bsdf_parameter(bsdf.kind(), "int_ior")->word] ==
+           bsdf.words[bsdf_parameter(bsdf.kind(), "ext_ior")->word];
 }
 
 Bsdf without_facets(const Bsdf &bsdf) {
-    const bool is_metal = bsdf.is<bsdf_roughconductor_record>();
-    if ((!is_metal && !bsdf.is<bsdf_roughdielectric_record>()) || !is_zero(bsdf, "alpha_u") ||
-        !is_zero(bsdf, "alpha_v"))
+    switch (bsdf.kind()) {
+    case BSDF_roughplastic:
+        return is_zero(bsdf, "alpha") ? first_part<bsdf_plastic_record>(bsdf) : bsdf;
+    case BSDF_roughconductor:
+    case BSDF_roughdielectric:
+        if (!is_zero(bsdf, "alpha_u") || !is_zero(bsdf, "alpha_v"))
+            return bsdf;
+        return bsdf.is<bsdf_roughconductor_record>() ? first_part<bsdf_conductor_record>(bsdf)
+                                                     : first_part<bsdf_dielectric_record>(bsdf);
+    default:
         return bsdf;
-    return is_metal ? first_part<bsdf_conductor_record>(bsdf) : first_part<bsdf_dielectric_record>(bsdf);
+    }
+}
+
+bool is_too_dense(const Bsdf &bsdf) {
+    if (!bsdf.is<bsdf_plastic_record>())
+        return false;
+    const auto plastic = bsdf.as<bsdf_plastic_record>();
+    return plastic.int_ior.value > densest_plastic * plastic.ext_ior.value;
+}
+
+std::string too_dense_text(const std::string &outside) {
+    return fmt::format("must be at most {:g} times {}", densest_plastic, outside);
 }
 
 } // namespace opal

@@ -21,6 +21,15 @@ size_t texture_word(ParameterType type, size_t word) {
     }
 }
 
+// The rows of a kind, of which no number has a texture if a CURVE depends on the numbers.
+std::vector<Parameter> without_textures_of_curves(std::vector<Parameter> rows) {
+    if (std::ranges::find(rows, ParameterType::CURVE, &Parameter::type) != rows.end())
+        for (Parameter &row : rows)
+            if (row.type == ParameterType::NUMBER)
+                row.texture_word = 0;
+    return rows;
+}
+
 } // namespace
 
 std::span<const Parameter> bsdf_parameters(uint kind) {
@@ -37,7 +46,7 @@ std::span<const Parameter> bsdf_parameters(uint kind) {
 #define OPAL_BSDF_PARAMETERS(name, traits)                                                                             \
     [] {                                                                                                               \
         using Record [[maybe_unused]] = bsdf_##name##_record;                                                          \
-        return std::vector<Parameter>{OPAL_BSDF_##name(OPAL_PARAMETER_ROW)};                                           \
+        return without_textures_of_curves({OPAL_BSDF_##name(OPAL_PARAMETER_ROW)});                                     \
     }(),
     static const std::vector<Parameter> tables[] = {OPAL_ALL_BSDFS(OPAL_BSDF_PARAMETERS)};
     return tables[kind];

@@ -33,7 +33,10 @@ constexpr ValueRange INSIDE(double least, double most) { return {least, most, tr
 
 constexpr double REQUIRED = NAN; // in place of a default
 
-enum class ParameterType { COLOR, NUMBER, FLAG, BSDF, POINT, VECTOR, IMAGE, TRANSFORM };
+enum class ParameterType { COLOR, NUMBER, FLAG, BSDF, POINT, VECTOR, IMAGE, TRANSFORM, CURVE };
+
+// Whether a file or the command line gives it as a property.
+inline bool is_property(ParameterType type) { return type != ParameterType::BSDF && type != ParameterType::CURVE; }
 
 struct Parameter {
     ParameterType type;
@@ -43,7 +46,7 @@ struct Parameter {
     ValueRange range;
     std::string meaning;
     size_t word;         // of a BSDF's record: the parameter's first one ...
-    size_t texture_word; // ... and that of its texture; 0: it cannot have one
+    size_t texture_word; // ... and that of its texture; 0: it cannot have one, as no number of a kind with a CURVE
 };
 
 std::span<const Parameter> bsdf_parameters(uint kind);             // kind: BSDF_*

@@ -383,6 +383,14 @@ PREVIEW = """
     <bsdf type="roughdielectric" id="ground_glass">
         <float name="alpha" value="0.5"/>
     </bsdf>
+    <bsdf type="plastic" id="billiard_ball">
+        <rgb name="diffuse_reflectance" value="0.5, 0.03, 0.02"/>
+        <boolean name="nonlinear" value="true"/>
+    </bsdf>
+    <bsdf type="roughplastic" id="satin_plastic">
+        <rgb name="diffuse_reflectance" value="0.06, 0.24, 0.36"/>
+        <float name="alpha" value="0.15"/>
+    </bsdf>
 """
 
 

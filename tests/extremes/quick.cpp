@@ -44,7 +44,7 @@ TEST_CASE("Single precision keeps what is promised at the ends of each range", "
         return;
     for (const char *name :
          {"scale", "distance", "light-size", "sphere-scale", "sphere-distance", "sphere-furnace", "sphere-light",
-          "alpha", "principled", "phong", "edges", "numbers", "samplers", "depth", "height"})
+          "alpha", "plastic-alpha", "principled", "phong", "edges", "numbers", "samplers", "depth", "height"})
         require_kept(run_stress(row(name), device(), small(), 100));
 }
 

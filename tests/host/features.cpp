@@ -151,6 +151,9 @@ TEST_CASE("features are what the scene and the strategy ask for, each with a rea
         CHECK_FALSE(rough[FEATURE_all_facets]);
         CHECK_FALSE(rough[FEATURE_tangents]);
         CHECK(with(bsdf_roughdielectric_record{.sample_visible = 0})[FEATURE_all_facets]);
+        CHECK(with(bsdf_roughplastic_record{})[FEATURE_beckmann]);
+        CHECK(with(bsdf_roughplastic_record{.ggx = 1})[FEATURE_ggx]);
+        CHECK_FALSE(with(bsdf_plastic_record{})[FEATURE_beckmann]);
         const Features brushed = with(bsdf_roughconductor_record{.alpha_u = 0.2});
         CHECK(brushed[FEATURE_beckmann]);
         CHECK(brushed[FEATURE_tangents]);
@@ -179,6 +182,8 @@ TEST_CASE("features are what the scene and the strategy ask for, each with a rea
                                                FEATURE_bsdf_principled,
                                                FEATURE_bsdf_principledthin,
                                                FEATURE_bsdf_oren_nayar,
+                                               FEATURE_bsdf_plastic,
+                                               FEATURE_bsdf_roughplastic,
                                                FEATURE_bsdf_conductor,
                                                FEATURE_bsdf_roughconductor,
                                                FEATURE_bsdf_thindielectric,

@@ -320,6 +320,28 @@ TEST_CASE_METHOD(LoadFixture, "BSDFs with their parameters", "[load]") {
     CHECK(phong.ks.value[0] == 0.5f);
 }
 
+TEST_CASE_METHOD(LoadFixture, "plastics", "[load]") {
+    CHECK(bsdf("<bsdf type='plastic'/>").words == words_of(bsdf_plastic_record{}));
+    const auto record = bsdf("<bsdf type='roughplastic'><color name='diffuse_reflectance' value='0.1 0.2 0.3'/>"
+                             "<string name='distribution' value='ggx'/><string name='intIOR' value='pet'/></bsdf>")
+                            .as<bsdf_roughplastic_record>();
+    CHECK(record.diffuse_reflectance.value[1] == 0.2f);
+    CHECK(record.alpha.value == 0.1f);
+    CHECK(record.ggx == 1);
+    CHECK(record.int_ior.value == 1.575f);
+    CHECK(bsdf("<bsdf type='roughplastic'><float name='alpha' value='0'/></bsdf>").words ==
+          words_of(bsdf_plastic_record{}));
+    CHECK_THAT(bsdf_error("roughplastic", "<float name='intIOR' value='1'/><float name='extIOR' value='1'/>"),
+               Catch::Contains("must differ from extIOR"));
+    CHECK_THAT(bsdf_error("plastic", "<float name='intIOR' value='4'/>"),
+               Catch::Contains("must be at most 3.8 times extIOR"));
+    CHECK_THAT(bsdf_error("roughplastic", "<float name='alpha' value='2'/>"), Catch::Contains("must be 0 to 1"));
+    // What the host computes numbers from is the same all over.
+    CHECK_THAT(bsdf_error("roughplastic", "<texture name='alpha' type='checker'/>"),
+               Catch::Contains("'alpha'") && Catch::Contains("available: diffuse_reflectance, specular_reflectance"));
+    CHECK_THAT(bsdf_error("plastic", "<float name='boundary' value='1'/>"), Catch::Contains("'boundary'"));
+}
+
 TEST_CASE_METHOD(LoadFixture, "principled, and the names that forks have for it", "[load]") {
     const Bsdf plain = bsdf("<bsdf type='principled'/>");
     CHECK(plain.as<bsdf_principled_record>().eta.value == 1.5f);

@@ -229,7 +229,7 @@ TEST_CASE("the manual's rows of materials, lights and cameras are those of the l
     std::vector<std::string> rows;
     for (uint kind = 0; kind < BSDF_COUNT; ++kind)
         for (const Parameter &parameter : bsdf_parameters(kind))
-            if (parameter.type != ParameterType::BSDF)
+            if (is_property(parameter.type))
                 rows.push_back(row_of(bsdf_name(kind), parameter));
     for (uint kind = 0; kind < EMITTER_COUNT; ++kind)
         for (const Parameter &parameter : emitter_parameters(kind))

@@ -585,6 +585,35 @@ TEST_CASE_METHOD(MitsubaFixture, "Disney's materials have Mitsuba's names", "[mi
     CHECK(bsdf("twosided", "<bsdf type='principled'/>").is<bsdf_twosided_record>());
 }
 
+TEST_CASE_METHOD(MitsubaFixture, "plastics have Mitsuba's names and defaults", "[mitsuba]") {
+    const Bsdf plain = bsdf("plastic");
+    CHECK(plain.words == words_of(bsdf_plastic_record{}));
+    CHECK(bsdf("roughplastic").words == words_of(bsdf_roughplastic_record{}));
+    const Bsdf rough = bsdf("roughplastic", "<rgb name='diffuse_reflectance' value='0.1, 0.2, 0.3'/>"
+                                            "<texture type='checkerboard' name='specular_reflectance'/>"
+                                            "<boolean name='nonlinear' value='true'/><string name='int_ior' "
+                                            "value='Water'/><float name='ext_ior' value='1'/><float name='alpha' "
+                                            "value='0.3'/><string name='distribution' value='GGX'/><boolean "
+                                            "name='sample_visible' value='false'/>");
+    const auto record = rough.as<bsdf_roughplastic_record>();
+    CHECK(record.diffuse_reflectance.value[2] == 0.3f);
+    CHECK(record.specular_reflectance.value[0] == 1);
+    CHECK(rough.textures.size() == 1);
+    CHECK(record.nonlinear == 1);
+    CHECK(record.int_ior.value == 1.333f);
+    CHECK(record.ext_ior.value == 1);
+    CHECK(record.alpha.value == 0.3f);
+    CHECK(record.ggx == 1);
+    CHECK(record.sample_visible == 0);
+    // Without roughness it is the smooth one, with its textures.
+    const Bsdf smooth = bsdf("roughplastic", "<float name='alpha' value='0'/><boolean name='nonlinear' value='true'/>"
+                                             "<texture type='checkerboard' name='diffuse_reflectance'/>");
+    CHECK(smooth.words == words_of(bsdf_plastic_record{.diffuse_reflectance = 1, .nonlinear = 1}));
+    CHECK(smooth.textures.size() == 1);
+    CHECK(bsdf("twosided", "<bsdf type='plastic'/>").is<bsdf_twosided_record>());
+    CHECK((plain.traits() & (OPAL_SMOOTH | OPAL_DISCRETE)) == (OPAL_SMOOTH | OPAL_DISCRETE));
+}
+
 TEST_CASE_METHOD(MitsubaFixture, "one material serves all that refer to it", "[mitsuba]") {
     const SceneDescription scene = load("<shape type='sphere'><ref id='red'/></shape>"
                                         "<bsdf type='diffuse' id='red'><rgb name='reflectance' value='0.5 0 0'/></bsdf>"
@@ -657,6 +686,21 @@ TEST_CASE_METHOD(MitsubaFixture, "what Opal cannot render is an error with its p
          ":3:1: property 'distribution': unknown distribution 'phong'; available: beckmann, ggx"},
         {in_bsdf("roughdielectric", "<float name='int_ior' value='1.5'/><float name='ext_ior' value='1.5'/>"),
          ":3:1: property 'int_ior': must differ from ext_ior"},
+        {in_bsdf("roughplastic", "<float name='int_ior' value='1.5'/><float name='ext_ior' value='1.5'/>"),
+         ":3:1: property 'int_ior': must differ from ext_ior"},
+        {in_bsdf("roughplastic", "<float name='alpha' value='-0.1'/>"), ":3:1: property 'alpha': must be 0 to 1"},
+        {in_bsdf("roughplastic", "<float name='alpha' value='1.5'/>"), ":3:1: property 'alpha': must be 0 to 1"},
+        {in_bsdf("roughplastic", "<texture name='alpha' type='checkerboard'/>"),
+         ":3:1: property 'alpha' is a <texture> here, but must"},
+        {in_bsdf("roughplastic", "<float name='alpha' value='0'/>\n<float name='int_ior' value='4'/>"),
+         ":4:1: property 'int_ior': must be at most 3.8 times ext_ior"},
+        {in_bsdf("plastic", "<float name='int_ior' value='4'/>"),
+         ":3:1: property 'int_ior': must be at most 3.8 times ext_ior"},
+        {in_bsdf("plastic", "<rgb name='diffuse_reflectance' value='-1 0 0'/>"),
+         ":3:1: property 'diffuse_reflectance': must be 0 to 1"},
+        {in_bsdf("plastic", "<rgb name='specular_reflectance' value='2'/>"),
+         ":3:1: property 'specular_reflectance': must be 0 to 1"},
+        {in_bsdf("plastic", "<float name='alpha' value='0.1'/>"), ":3:1: bsdf 'plastic' has no property 'alpha'"},
         {in_bsdf("twosided", "<bsdf type='dielectric'/>"), ":3:1: a twosided cannot hold a BSDF that light passes"},
         {in_bsdf("twosided", "<bsdf type='null'/>"), ":3:1: a twosided cannot hold a BSDF that light passes"},
         {in_bsdf("twosided", "<bsdf type='mask'><bsdf type='diffuse'/></bsdf>"), ":3:1: a twosided cannot hold a BSDF"},
@@ -740,8 +784,8 @@ TEST_CASE_METHOD(MitsubaFixture, "what Opal cannot render is an error with its p
 }
 
 TEST_CASE_METHOD(MitsubaFixture, "plug-ins that Opal does not have are all named in one run", "[mitsuba]") {
-    const std::string body = "<shape type='cylinder'/>\n<shape type='cylinder'><bsdf type='plastic'/></shape>\n"
-                             "<bsdf type='plastic' id='b'/>\n<emitter type='sunsky'><string name='filename' value='x'/>"
+    const std::string body = "<shape type='cylinder'/>\n<shape type='cylinder'><bsdf type='hair'/></shape>\n"
+                             "<bsdf type='hair' id='b'/>\n<emitter type='sunsky'><string name='filename' value='x'/>"
                              "</emitter>\n<medium type='homogeneous' id='m'/>\n"
                              "<shape type='sphere'><bsdf type='diffuse'><texture name='reflectance' type='volume'>"
                              "<string name='filename' value='x.png'/></texture></bsdf></shape>\n"
@@ -750,8 +794,8 @@ TEST_CASE_METHOD(MitsubaFixture, "plug-ins that Opal does not have are all named
     CHECK(
         error_in(body) ==
         ":2:1: unknown shape type 'cylinder' (2 in the scene); available: obj, ply, sphere, rectangle, cube\n"
-        ":3:24: unknown bsdf type 'plastic' (2 in the scene); available: diffuse, dielectric, thindielectric, "
-        "roughdielectric, conductor, roughconductor, twosided, "
+        ":3:24: unknown bsdf type 'hair' (2 in the scene); available: diffuse, dielectric, thindielectric, "
+        "roughdielectric, conductor, roughconductor, plastic, roughplastic, twosided, "
         "mask, blendbsdf, normalmap, bumpmap, null, principled, principledthin\n"
         ":5:1: unknown emitter type 'sunsky'; available: area, point, spot, directional, projector, constant, envmap\n"
         ":6:1: unknown medium type 'homogeneous'; available: none\n"
@@ -761,7 +805,7 @@ TEST_CASE_METHOD(MitsubaFixture, "plug-ins that Opal does not have are all named
         ":9:28: unknown film type 'specfilm'; available: hdrfilm\n"
         ":9:51: unknown sampler type 'halton'; available: independent, stratified, multijitter, orthogonal, ldsampler");
     // Those within others, too.
-    CHECK_THAT(error_in("<bsdf type='plastic'>\n<texture name='diffuse_reflectance' type='wood'/></bsdf>\n"
+    CHECK_THAT(error_in("<bsdf type='hair'>\n<texture name='diffuse_reflectance' type='wood'/></bsdf>\n"
                         "<sensor type='batch'>\n<film type='specfilm'/>\n<sampler type='halton'/></sensor>"),
                Catch::Contains("\n:3:1: unknown texture type 'wood'") &&
                    Catch::Contains("\n:5:1: unknown film type 'specfilm'") &&
@@ -771,7 +815,7 @@ TEST_CASE_METHOD(MitsubaFixture, "plug-ins that Opal does not have are all named
 TEST_CASE_METHOD(MitsubaFixture, "lenient: what stands in for a plug-in is said", "[mitsuba]") {
     const LoadOptions lenient{.lenient = true};
     const std::string body =
-        "<shape type='disk'/><shape type='sphere'><bsdf type='plastic'><bsdf type='x'/></bsdf></shape>\n"
+        "<shape type='disk'/><shape type='sphere'><bsdf type='hair'><bsdf type='x'/></bsdf></shape>\n"
         "<emitter type='constant'><texture name='radiance' type='checkerboard'><float name='color0' "
         "value='0.6'/></texture>"
         "</emitter>\n"
@@ -787,7 +831,7 @@ TEST_CASE_METHOD(MitsubaFixture, "lenient: what stands in for a plug-in is said"
     REQUIRE(told.size() == 4);
     CHECK_THAT(told[0],
                Catch::StartsWith(":2:1: unknown shape type 'disk'") && Catch::EndsWith("; the shape is left out"));
-    CHECK_THAT(told[1], Catch::StartsWith(":2:42: unknown bsdf type 'plastic'") &&
+    CHECK_THAT(told[1], Catch::StartsWith(":2:42: unknown bsdf type 'hair'") &&
                             Catch::EndsWith("; a diffuse one of reflectance 0.5 stands in for it"));
     CHECK(told[2] == ":3:26: property 'radiance': Opal has no texture here yet; 0.4 0.4 0.4 stands in for it");
     CHECK_THAT(told[3],

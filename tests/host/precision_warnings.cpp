@@ -50,6 +50,22 @@ TEST_CASE("An ordinary scene brings no warning", "[precision_warnings]") {
     CHECK(warnings_of("0 -300 1", "").empty());
 }
 
+TEST_CASE("A plastic that gains light by the fit of what its coat sends back is told", "[precision_warnings]") {
+    const auto of = [](const std::string &type, const std::string &properties) {
+        return warnings_of(near, fmt::format(R"(<bsdf type="{}">{}</bsdf>)", type, properties));
+    };
+    const std::string white = R"(<color name="diffuse_reflectance" value="1 1 1"/>)",
+                      dense = R"(<float name="intIOR" value="3"/>)";
+    CHECK(of("plastic", "").empty());
+    CHECK(of("plastic", white).empty());
+    CHECK(of("plastic", dense).empty());
+    CHECK(of("roughplastic", white + dense).empty());
+    check_one(of("plastic", white + dense), "4:", "of the light that enters leaves, as in Mitsuba");
+    check_one(of("plastic", R"(<float name="intIOR" value="1"/><float name="extIOR" value="1"/>)"),
+              "4:", "the coat reflects nothing");
+    check_one(of("roughplastic", R"(<float name="alpha" value="1e-7"/>)"), "4:", "alpha 1e-07 is below 1e-06");
+}
+
 TEST_CASE("A principled material that gains light is told with its angle", "[precision_warnings]") {
     const auto of = [](const std::string &type, const std::string &properties) {
         return warnings_of(near, fmt::format(R"(<bsdf type="{}">{}</bsdf>)", type, properties));

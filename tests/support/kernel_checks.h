@@ -27,6 +27,7 @@ Findings check_principled(const Sources &sources, unsigned seed);    // and oren
 Findings check_albedos(const Sources &sources, unsigned seed);       // microfacet against quadrature
 Findings check_refraction(const Sources &sources, unsigned seed);    // Snell's law and Fresnel's formulas in double
 Findings check_metals(const Sources &sources, unsigned);             // smooth metals and panes against Mitsuba
+Findings check_plastics(const Sources &sources, unsigned);           // against Mitsuba's f, densities and samples
 Findings check_choices(const Sources &sources, unsigned seed);       // shares of BSDFs' parts, number by number
 Findings check_emitters(const Sources &sources, unsigned seed);      // check_lights of tests/cases/emitters
 Findings check_trigonometry(const Sources &sources, unsigned seed);  // cos_sin_2pi against double

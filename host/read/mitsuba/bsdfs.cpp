@@ -72,11 +72,16 @@ double parse_index(Object &object, const char *name, const std::string &otherwis
     return index;
 }
 
+// The indices of both sides. inside: the medium that is meant where the file says none
+void set_indices(Object &object, Bsdf &bsdf, const std::string &inside) {
+    set_number(bsdf, "int_ior", parse_index(object, "int_ior", inside));
+    set_number(bsdf, "ext_ior", parse_index(object, "ext_ior", "air"));
+    object.check(!has_equal_indices(bsdf), "int_ior", "must differ from ext_ior");
+}
+
 // The parameters of every boundary between two media.
 void set_boundary(Importer &importer, Object &object, Bsdf &bsdf) {
-    const double inside = parse_index(object, "int_ior", "bk7"), outside = parse_index(object, "ext_ior", "air");
-    set_number(bsdf, "int_ior", inside);
-    set_number(bsdf, "ext_ior", outside);
+    set_indices(object, bsdf, "bk7");
     for (const char *name : {"specular_reflectance", "specular_transmittance"})
         set_parameter(importer, object, name, bsdf, name);
 }
@@ -109,7 +114,17 @@ void set_metal(Importer &importer, Object &object, Bsdf &bsdf) {
     set_parameter(importer, object, "specular_reflectance", bsdf, "specular_reflectance");
 }
 
-// The parameters of every surface of facets. The distribution in upper or lower case, as Mitsuba has it.
+// Which facets there are, in upper or lower case as Mitsuba has it, and which are drawn.
+void set_facet_choices(Object &object, Bsdf &bsdf) {
+    std::string name = object.string("distribution").value_or("beckmann");
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    object.check(name == "ggx" || name == "beckmann", "distribution",
+                 unknown_name("distribution", name, {"beckmann", "ggx"}));
+    set_flag(bsdf, "ggx", name == "ggx");
+    set_flag(bsdf, "sample_visible", object.boolean("sample_visible").value_or(true));
+}
+
+// The parameters of facets of two roughnesses.
 void set_facets(Importer &importer, Object &object, Bsdf &bsdf) {
     const bool one = object.has("alpha");
     for (const char *name : {"alpha_u", "alpha_v"}) {
@@ -119,12 +134,7 @@ void set_facets(Importer &importer, Object &object, Bsdf &bsdf) {
     }
     if (!one && object.has("alpha_u") != object.has("alpha_v"))
         object.mistake("alpha_u and alpha_v must be given together");
-    std::string name = object.string("distribution").value_or("beckmann");
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    object.check(name == "ggx" || name == "beckmann", "distribution",
-                 unknown_name("distribution", name, {"beckmann", "ggx"}));
-    set_flag(bsdf, "ggx", name == "ggx");
-    set_flag(bsdf, "sample_visible", object.boolean("sample_visible").value_or(true));
+    set_facet_choices(object, bsdf);
 }
 
 // A conductor, or the mirror that the one without parameters is.
@@ -149,8 +159,37 @@ Bsdf parse_roughdielectric(Importer &importer, Object &object) {
     Bsdf bsdf = bsdf_roughdielectric_record{};
     set_boundary(importer, object, bsdf);
     set_facets(importer, object, bsdf);
-    object.check(!has_equal_indices(bsdf), "int_ior", "must differ from ext_ior");
     return without_facets(bsdf);
+}
+
+// The parameters of every plastic.
+void set_plastic(Importer &importer, Object &object, Bsdf &bsdf) {
+    set_indices(object, bsdf, "polypropylene");
+    for (const char *name : {"diffuse_reflectance", "specular_reflectance"})
+        set_parameter(importer, object, name, bsdf, name);
+    set_flag(bsdf, "nonlinear", object.boolean("nonlinear").value_or(false));
+}
+
+Bsdf checked_plastic(Object &object, const Bsdf &bsdf) {
+    object.check(!is_too_dense(bsdf), "int_ior", too_dense_text("ext_ior"));
+    return bsdf;
+}
+
+Bsdf parse_plastic(Importer &importer, Object &object) {
+    Bsdf bsdf = bsdf_plastic_record{};
+    set_plastic(importer, object, bsdf);
+    return checked_plastic(object, bsdf);
+}
+
+Bsdf parse_roughplastic(Importer &importer, Object &object) {
+    Bsdf bsdf = bsdf_roughplastic_record{};
+    set_plastic(importer, object, bsdf);
+    const Parameter &alpha = *bsdf_parameter(BSDF_roughplastic, "alpha");
+    const double given = object.number("alpha").value_or(alpha.initial);
+    object.check(alpha.range.holds(given), "alpha", "must be " + text_of(alpha.range));
+    set_number(bsdf, "alpha", given);
+    set_facet_choices(object, bsdf);
+    return checked_plastic(object, without_facets(bsdf));
 }
 
 // The materials within a material, of which there must be so many.
@@ -272,6 +311,8 @@ const std::vector<Plugin<Bsdf (*)(Importer &, Object &)>> bsdf_types = {
     {"roughdielectric", "roughdielectric", parse_roughdielectric},
     {"conductor", "conductor", parse_conductor},
     {"roughconductor", "roughconductor", parse_roughconductor},
+    {"plastic", "plastic", parse_plastic},
+    {"roughplastic", "roughplastic", parse_roughplastic},
     {"twosided", "twosided", parse_twosided},
     {"mask", "mask", parse_mask},
     {"blendbsdf", "blendbsdf", parse_blendbsdf},

@@ -45,16 +45,8 @@ void read_metal(Properties &properties, Bsdf &bsdf) {
     set_color(bsdf, "k", metal->k);
 }
 
-// What surfaces of facets have by other names: the distribution, and alpha, of both directions.
-void read_facets(Properties &properties, Bsdf &bsdf) {
-    const Parameter *const ggx = bsdf_parameter(bsdf.kind(), "ggx");
-    if (!ggx)
-        return;
-    if (const std::optional<std::string> name = properties.string("distribution")) {
-        properties.check(*name == "ggx" || *name == "beckmann", "distribution",
-                         unknown_name("distribution", *name, {"beckmann", "ggx"}));
-        bsdf.words[ggx->word] = *name == "ggx";
-    }
+// What facets of two roughnesses have by another name: alpha, of both directions.
+void read_roughness(Properties &properties, Bsdf &bsdf) {
     const Parameter *const u = bsdf_parameter(bsdf.kind(), "alpha_u"), *const v =
                                                                            bsdf_parameter(bsdf.kind(), "alpha_v");
     if (!u || !v)
@@ -66,6 +58,18 @@ void read_facets(Properties &properties, Bsdf &bsdf) {
         bsdf.words[u->word] = bsdf.words[v->word] = std::bit_cast<uint>(float(*alpha));
     } else if (properties.has("alpha_u") != properties.has("alpha_v")) {
         properties.mistake("alpha_u and alpha_v must be given together");
+    }
+}
+
+// The distribution of facets by its name.
+void read_distribution(Properties &properties, Bsdf &bsdf) {
+    const Parameter *const ggx = bsdf_parameter(bsdf.kind(), "ggx");
+    if (!ggx)
+        return;
+    if (const std::optional<std::string> name = properties.string("distribution")) {
+        properties.check(*name == "ggx" || *name == "beckmann", "distribution",
+                         unknown_name("distribution", *name, {"beckmann", "ggx"}));
+        bsdf.words[ggx->word] = *name == "ggx";
     }
 }
 
@@ -87,6 +91,7 @@ void read_parameter(Properties &properties, const Parameter &parameter, std::spa
     case ParameterType::VECTOR:
     case ParameterType::IMAGE:
     case ParameterType::TRANSFORM:
+    case ParameterType::CURVE:
         break;
     case ParameterType::COLOR:
         if (const auto color = properties.color(parameter.xml_name))
@@ -150,9 +155,11 @@ Bsdf parse_bsdf(const XmlNode &node, const ParseContext &context) {
     if (bsdf.is<bsdf_principled_record>())
         read_specular(properties, bsdf);
     read_metal(properties, bsdf);
-    read_facets(properties, bsdf);
+    read_roughness(properties, bsdf);
+    read_distribution(properties, bsdf);
     properties.check(!has_equal_indices(bsdf), "intIOR", "must differ from extIOR");
     bsdf = without_facets(bsdf);
+    properties.check(!is_too_dense(bsdf), "intIOR", too_dense_text("extIOR"));
     add_children(properties, *type, bsdf);
     bsdf.check_count();
     for (const XmlNode &texture : properties.children("texture"))
