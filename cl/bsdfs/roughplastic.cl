@@ -1,6 +1,6 @@
 // roughplastic: a transparent coat of rough facets over a diffuse base, one-sided, as Mitsuba has it.
-//   <bsdf type="roughplastic"> <color name="diffuse_reflectance" value="0.1 0.3 0.6"/> <float name="alpha" value="0.2"/>
-//     </bsdf>
+//   <bsdf type="roughplastic"> <color name="diffuse_reflectance" value="0.1 0.3 0.6"/>
+//     <float name="alpha" value="0.2"/> </bsdf>
 // The facets reflect as those of roughconductor, by Fresnel's reflectance of a dielectric. The base is that of plastic,
 // with T(w) what facets transmit of light from w, and R what they reflect back (host/flatten/plastic_boundary.h).
 #include "bsdfs/fresnel.cl"

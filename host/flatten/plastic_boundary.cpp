@@ -113,8 +113,8 @@ public:
         for (size_t i = 0; i < count; i++) {
             const double along = ggx_ ? 0 : beckmann_slope(rule_.points[i], stretched_sine, stretched_cosine);
             for (size_t k = 0; k < count / 2; k++) {
-                const Slope slope = ggx_ ? ggx_slope(disk_[k * count + i], stretched_sine, stretched_cosine)
-                                         : Slope{along, across_[k]};
+                const Slope slope =
+                    ggx_ ? ggx_slope(disk_[k * count + i], stretched_sine, stretched_cosine) : Slope{along, across_[k]};
                 const double x = alpha_ * slope.along, y = alpha_ * slope.across, z = 1 / std::sqrt(1 + x * x + y * y);
                 sum += 2 * rule_.weights[i] * rule_.weights[k] * take(z, (cosine - sine * x) * z);
             }
@@ -177,7 +177,8 @@ std::vector<float> plastic_boundary(const bsdf_plastic_record &plastic) {
 std::vector<float> plastic_boundary(const bsdf_roughplastic_record &plastic) {
     const double eta = double(plastic.int_ior.value) / plastic.ext_ior.value;
     const double alpha = std::max(plastic.alpha.value, LEAST_ALPHA);
-    const Facets from_outside(alpha, plastic.ggx, 32), from_inside(alpha, plastic.ggx, 128);
+    const auto points = [](double index) { return index > 1 ? 32 : 128; }; // more where some light is all reflected
+    const Facets from_outside(alpha, plastic.ggx, points(eta)), from_inside(alpha, plastic.ggx, points(1 / eta));
     constexpr int cosines = PLASTIC_COSINES;
     std::vector<float> numbers(PLASTIC_TRANSMITTED + cosines);
     double sum = 0;

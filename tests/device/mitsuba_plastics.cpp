@@ -1,14 +1,13 @@
 // Plastics against Mitsuba 3.9.1 (scalar_rgb): values, and albedos under a white sky.
-#include "flatten/flatten.h"
 #include "flatten/plastic_boundary.h"
 #include "read/nori/parsers.h"
-#include "scene/examples.h"
 #include "support/kernel_checks.h"
 #include "support/probe.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -24,26 +23,16 @@ struct Furnace {
 };
 // Of Beckmann's distribution; alpha 0 is plastic.
 const Furnace furnaces[] = {
-    {0, 1.0, false, {1.003, 1.003, 1.003, 1.002}},
-    {0.05, 1.0, false, {0.979, 0.9792, 0.9825, 0.9445}},
-    {0.1, 1.0, false, {0.9698, 0.97, 0.9717, 0.9176}},
-    {0.3, 1.0, false, {0.8764, 0.874, 0.8505, 0.8652}},
-    {0.6, 1.0, false, {0.6851, 0.6737, 0.6691, 0.6702}},
-    {0, 0.5, false, {0.5209, 0.5259, 0.5859, 0.8059}},
-    {0.05, 0.5, false, {0.509, 0.5142, 0.5756, 0.7366}},
-    {0.1, 0.5, false, {0.5044, 0.5098, 0.5689, 0.6742}},
-    {0.3, 0.5, false, {0.4578, 0.4625, 0.4813, 0.5481}},
-    {0.6, 0.5, false, {0.3597, 0.3572, 0.3705, 0.3978}},
-    {0, 1.0, true, {1.003, 1.003, 1.003, 1.002}},
-    {0.05, 1.0, true, {0.979, 0.9792, 0.9825, 0.9445}},
-    {0.1, 1.0, true, {0.9698, 0.97, 0.9717, 0.9176}},
-    {0.3, 1.0, true, {0.8764, 0.874, 0.8505, 0.8652}},
-    {0.6, 1.0, true, {0.6851, 0.6737, 0.6691, 0.6702}},
-    {0, 0.5, true, {0.3188, 0.326, 0.4112, 0.7238}},
-    {0.05, 0.5, true, {0.317, 0.3245, 0.4096, 0.6517}},
-    {0.1, 0.5, true, {0.3167, 0.3244, 0.4067, 0.5755}},
-    {0.3, 0.5, true, {0.3093, 0.3167, 0.3503, 0.4357}},
-    {0.6, 0.5, true, {0.2816, 0.2813, 0.2989, 0.3326}},
+    {0, 1.0, false, {1.003, 1.003, 1.003, 1.002}},       {0.05, 1.0, false, {0.979, 0.9792, 0.9825, 0.9445}},
+    {0.1, 1.0, false, {0.9698, 0.97, 0.9717, 0.9176}},   {0.3, 1.0, false, {0.8764, 0.874, 0.8505, 0.8652}},
+    {0.6, 1.0, false, {0.6851, 0.6737, 0.6691, 0.6702}}, {0, 0.5, false, {0.5209, 0.5259, 0.5859, 0.8059}},
+    {0.05, 0.5, false, {0.509, 0.5142, 0.5756, 0.7366}}, {0.1, 0.5, false, {0.5044, 0.5098, 0.5689, 0.6742}},
+    {0.3, 0.5, false, {0.4578, 0.4625, 0.4813, 0.5481}}, {0.6, 0.5, false, {0.3597, 0.3572, 0.3705, 0.3978}},
+    {0, 1.0, true, {1.003, 1.003, 1.003, 1.002}},        {0.05, 1.0, true, {0.979, 0.9792, 0.9825, 0.9445}},
+    {0.1, 1.0, true, {0.9698, 0.97, 0.9717, 0.9176}},    {0.3, 1.0, true, {0.8764, 0.874, 0.8505, 0.8652}},
+    {0.6, 1.0, true, {0.6851, 0.6737, 0.6691, 0.6702}},  {0, 0.5, true, {0.3188, 0.326, 0.4112, 0.7238}},
+    {0.05, 0.5, true, {0.317, 0.3245, 0.4096, 0.6517}},  {0.1, 0.5, true, {0.3167, 0.3244, 0.4067, 0.5755}},
+    {0.3, 0.5, true, {0.3093, 0.3167, 0.3503, 0.4357}},  {0.6, 0.5, true, {0.2816, 0.2813, 0.2989, 0.3326}},
 };
 
 bsdf_roughplastic_record rough(double alpha, bool ggx, double index, double reflectance = 1, bool nonlinear = false) {
@@ -75,7 +64,8 @@ Planes grid(size_t side) {
 
 double albedo_of(KernelProbe &probe, unsigned id, double degrees, const Planes &numbers) {
     const double theta = degrees * std::numbers::pi / 180;
-    const Planes drawn = probe.bsdf_sample(id, {std::sin(theta) * 0.6, std::sin(theta) * 0.8, std::cos(theta)}, numbers);
+    const Planes drawn =
+        probe.bsdf_sample(id, {std::sin(theta) * 0.6, std::sin(theta) * 0.8, std::cos(theta)}, numbers);
     double sum = 0;
     for (size_t i = 0; i < drawn.count; i++)
         sum += drawn.at(BSDF_WEIGHT_R, i);
@@ -93,9 +83,8 @@ TEST_CASE("Plastics leave what Mitsuba's leave under a white sky", "[mitsuba_pla
     for (const Furnace &furnace : furnaces) {
         Bsdf plastic = bsdf_plastic_record{.diffuse_reflectance = furnace.reflectance, .nonlinear = furnace.nonlinear};
         if (furnace.alpha > 0)
-            plastic = bsdf_roughplastic_record{.diffuse_reflectance = furnace.reflectance,
-                                               .nonlinear = furnace.nonlinear,
-                                               .alpha = furnace.alpha};
+            plastic = bsdf_roughplastic_record{
+                .diffuse_reflectance = furnace.reflectance, .nonlinear = furnace.nonlinear, .alpha = furnace.alpha};
         bsdfs.push_back(plastic);
     }
     KernelProbe probe = double_probe(bsdfs);
@@ -109,8 +98,9 @@ TEST_CASE("Plastics leave what Mitsuba's leave under a white sky", "[mitsuba_pla
         }
 }
 
-// The smooth one reflects what Mitsuba's fit of the light that its coat sends back leaves too much.
-TEST_CASE("White plastics gain no light but by Mitsuba's fit", "[mitsuba_plastics]") {
+// The smooth one reflects what Mitsuba's fit of the light that its coat sends back leaves too much. Of a coat that is
+// thinner than what is outside, the table of 64 cosines blurs the angle from which on all is reflected.
+TEST_CASE("White plastics gain no light but by Mitsuba's fit and table", "[mitsuba_plastics]") {
     struct Case {
         Bsdf bsdf;
         double most;
@@ -118,17 +108,17 @@ TEST_CASE("White plastics gain no light but by Mitsuba's fit", "[mitsuba_plastic
     std::vector<Case> cases;
     for (const double index : {0.75, 1.05, 1.3, 1.49, 1.9, 3.}) {
         const double gain = (1 - diffuse_reflectance(1 / index)) / (1 - diffuse_reflectance_fit(1 / index));
-        cases.push_back({bsdf_plastic_record{.diffuse_reflectance = 1, .int_ior = index, .ext_ior = 1},
-                         std::max(1., gain)});
+        cases.push_back(
+            {bsdf_plastic_record{.diffuse_reflectance = 1, .int_ior = index, .ext_ior = 1}, std::max(1., gain)});
         for (const bool ggx : {false, true})
             for (const double alpha : {1e-6, 0.01, 0.1, 0.4, 1.})
-                cases.push_back({rough(alpha, ggx, index), 1});
+                cases.push_back({rough(alpha, ggx, index), index < 1 ? 1.003 : 1});
     }
     std::vector<Bsdf> bsdfs;
     for (const Case &each : cases)
         bsdfs.push_back(each.bsdf);
     KernelProbe probe = double_probe(bsdfs);
-    const Planes numbers = grid(128);
+    const Planes numbers = grid(512);
     for (unsigned id = 0; id < bsdfs.size(); id++)
         for (double degrees : {0., 30., 60., 80., 88., 89.9, 135.}) {
             INFO(id << " at " << degrees << " degrees");

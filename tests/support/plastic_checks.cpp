@@ -1,5 +1,5 @@
-// Plastics against values that Mitsuba 3.9.1 (scalar_rgb) gives: f cos and density of pairs of directions, and samples of
-// the smooth coat.
+// Plastics against values that Mitsuba 3.9.1 (scalar_rgb) gives: f cos and density of pairs of directions, and samples
+// of the smooth coat.
 #include "read/nori/parsers.h"
 #include "support/kernel_checks.h"
 #include "support/mitsuba_pairs.h"
@@ -296,10 +296,10 @@ std::array<double, 2> errors_of(const Known &known, MathMode math, const Sources
         const bool is_lit = row != known.rows.end() && row->pair == i;
         const Planes drawn = probe.bsdf_eval(0, wi, std::span(&wo, 1));
         for (size_t c = 0; c < 3; c++)
-            errors[0] = std::max(errors[0], error_of(drawn.at(EVAL_R + c, 0) * std::abs(wo.z),
-                                                     is_lit ? row->f_cos[c] : 0));
+            errors[0] =
+                std::max(errors[0], error_of(drawn.at(EVAL_R + c, 0) * std::abs(wo.z), is_lit ? row->f_cos[c] : 0));
         const double pdf = drawn.at(EVAL_PDF, 0), pdf_there = is_lit ? row->pdf : 0;
-        const auto [least, most] = std::minmax(pdf_there, pdf_there * exact_over_fit(bsdf, wi));
+        const auto [least, most] = std::minmax({pdf_there, pdf_there * exact_over_fit(bsdf, wi)});
         errors[1] = std::max(errors[1], error_of(pdf, std::clamp(pdf, least, most)));
         row += is_lit;
     }
@@ -335,7 +335,8 @@ Findings check_plastics(const Sources &sources, unsigned) {
         }
     }
     for (const CoatSample &known : known_samples)
-        findings.push_back(at_most("plastics: samples of the coat, off by", sample_error(known, sources), 1e-5, known.xml));
+        findings.push_back(
+            at_most("plastics: samples of the coat, off by", sample_error(known, sources), 1e-5, known.xml));
     return findings;
 }
 
