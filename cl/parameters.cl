@@ -1,6 +1,7 @@
 // parameters: reading of the parameters that a record holds (shared/parameters.h), each lane of its own record.
 #include "core/lanes.cl"
 #include "core/math.cl"
+#include "core/rows.cl"
 #include "scene.cl"
 #include "shared/parameters.h"
 #include "textures/dispatch.cl"
@@ -43,8 +44,9 @@ static real curve_at(Curve c, uint i, uint count, real x) {
 // The same times what the records' textures say at `point`.
 static v3 textured_color(const Scene *scene, global const ColorParameter *parameter, uints at, TexturePoint point,
                          mask active) {
-    v3 factor = texture_color(scene, GATHER_WORD(uints, &parameter->texture, at), point, active);
-    return v3_mul(color_parameter(parameter, at), factor);
+    FourWords words = four_words((global const uint *)parameter, at);
+    v3 value = v3_of(reals_of_words(words.a), reals_of_words(words.b), reals_of_words(words.c));
+    return v3_mul(value, texture_color(scene, words.d, point, active));
 }
 static real textured_number(const Scene *scene, global const NumberParameter *parameter, uints at, TexturePoint point,
                             mask active) {

@@ -5,11 +5,12 @@
 #include "core/lanes.cl"
 #include "core/math.cl"
 #include "core/rng.cl"
+#include "core/rows.cl"
 #include "emitters/interface.cl"
 #include "scene.cl"
 #include "surface.cl"
 
-// A map, one a lane.
+// The map of a scene, the same in all lanes.
 typedef struct {
     v3 x, y, z;           // its axes in world space
     uints width, height;
@@ -26,15 +27,15 @@ typedef struct {
     v3 color[4];
 } EnvironmentCorners;
 
-// The environment, whatever emitter a lane means: sizes in records of other kinds would lead out of the table.
-static uints environment_of(const Scene *scene) { return (uints)(scene->settings->environment); }
+// The environment's record, whatever emitter a lane means.
+static global const emitter_envmap_record *environment_record(const Scene *scene) {
+    return &scene->emitters[scene->settings->environment].u.of_envmap;
+}
 
-static EnvironmentView environment_view(const Scene *scene, uints id) {
-    EnvironmentView map = {GATHER_V3(scene->emitters, id, .u.of_envmap.to_local[0]),
-                           GATHER_V3(scene->emitters, id, .u.of_envmap.to_local[1]),
-                           GATHER_V3(scene->emitters, id, .u.of_envmap.to_local[2]),
-                           GATHER(uints, scene->emitters, id, .u.of_envmap.width),
-                           GATHER(uints, scene->emitters, id, .u.of_envmap.height)};
+static EnvironmentView environment_view(const Scene *scene) {
+    global const emitter_envmap_record *record = environment_record(scene);
+    EnvironmentView map = {v3_from(record->to_local[0]), v3_from(record->to_local[1]), v3_from(record->to_local[2]),
+                           (uints)(record->width), (uints)(record->height)};
     return map;
 }
 
@@ -61,12 +62,15 @@ static EnvironmentPlace environment_place(EnvironmentView map, v3 d, real *sine)
     return place;
 }
 
+static v3 environment_texel(const Scene *scene, uints texel) {
+    return v3_at(scene->environment_texels->color, texel * (uint)(sizeof(EnvironmentTexel) / 4));
+}
+
 static EnvironmentCorners environment_corners(const Scene *scene, EnvironmentView map, EnvironmentPlace place) {
     uints upper = place.row * map.width, lower = upper + map.width;
-    EnvironmentCorners corners = {{GATHER_V3(scene->environment_texels, upper + place.left, .color),
-                                   GATHER_V3(scene->environment_texels, upper + place.right, .color),
-                                   GATHER_V3(scene->environment_texels, lower + place.left, .color),
-                                   GATHER_V3(scene->environment_texels, lower + place.right, .color)}};
+    EnvironmentCorners corners = {
+        {environment_texel(scene, upper + place.left), environment_texel(scene, upper + place.right),
+         environment_texel(scene, lower + place.left), environment_texel(scene, lower + place.right)}};
     return corners;
 }
 
@@ -96,11 +100,10 @@ typedef struct {
     real of[4];
 } EnvironmentDensities;
 
-static EnvironmentDensities environment_densities(const Scene *scene, uints id, EnvironmentView map,
-                                                  EnvironmentCorners at, EnvironmentPlace place) {
-    real scale = GATHER(real, scene->emitters, id, .u.of_envmap.density_scale);
-    real subtracted = GATHER(real, scene->emitters, id, .u.of_envmap.subtracted);
-    real least = GATHER(real, scene->emitters, id, .u.of_envmap.least);
+static EnvironmentDensities environment_densities(const Scene *scene, EnvironmentView map, EnvironmentCorners at,
+                                                  EnvironmentPlace place) {
+    global const emitter_envmap_record *record = environment_record(scene);
+    real scale = record->density_scale, subtracted = record->subtracted, least = record->least;
     real sines[2] = {scale * sine_of_row(rows_from_pole(map, place.row), map),
                      scale * sine_of_row(rows_from_pole(map, place.row + 1u), map)};
     EnvironmentDensities densities;
@@ -117,8 +120,7 @@ static real linear_place(real a, real b, real u) {
 }
 
 static LightSample emitter_envmap_sample(const Scene *scene, uints id, v3 color, ReferencePoint from, v2 u, u2 bits) {
-    id = environment_of(scene);
-    EnvironmentView map = environment_view(scene, id);
+    EnvironmentView map = environment_view(scene);
     // bits.x 2^-32 + bits.y 2^-64 times the number of cells: a cell, and of what is left 32 bits, steps of 2^-32.
     uints cells = map.width * (map.height - 1u);
     uints low = bits.x * cells, rest = low + mul_hi(bits.y, cells);
@@ -135,7 +137,7 @@ static LightSample emitter_envmap_sample(const Scene *scene, uints id, v3 color,
     place.left = cell - place.row * map.width;
     place.right = column_after(place.left, map.width);
     EnvironmentCorners corners = environment_corners(scene, map, place);
-    EnvironmentDensities at = environment_densities(scene, id, map, corners, place);
+    EnvironmentDensities at = environment_densities(scene, map, corners, place);
     place.t = linear_place(at.of[0] + at.of[1], at.of[2] + at.of[3], u.y);
     real at_left = real_mixed(at.of[0], at.of[2], place.t), at_right = real_mixed(at.of[1], at.of[3], place.t);
     place.s = linear_place(at_left, at_right, u.x);
@@ -153,19 +155,17 @@ static LightSample emitter_envmap_sample(const Scene *scene, uints id, v3 color,
 }
 
 static v3 emitter_envmap_radiance(const Scene *scene, uints id, v3 color, v3 d, const Surface *s) {
-    id = environment_of(scene);
-    EnvironmentView map = environment_view(scene, id);
+    EnvironmentView map = environment_view(scene);
     real sine;
     EnvironmentPlace place = environment_place(map, d, &sine);
     return v3_mul(color, environment_color(environment_corners(scene, map, place), place));
 }
 
 static real emitter_envmap_pdf(const Scene *scene, uints id, ReferencePoint from, v3 d, const Surface *s) {
-    id = environment_of(scene);
-    EnvironmentView map = environment_view(scene, id);
+    EnvironmentView map = environment_view(scene);
     real sine;
     EnvironmentPlace place = environment_place(map, d, &sine);
-    EnvironmentDensities at = environment_densities(scene, id, map, environment_corners(scene, map, place), place);
+    EnvironmentDensities at = environment_densities(scene, map, environment_corners(scene, map, place), place);
     real above = real_mixed(at.of[0], at.of[1], place.s), below = real_mixed(at.of[2], at.of[3], place.s);
     real density = real_mixed(above, below, place.t);
     return sine > 0 ? density / sine : (real)(0);

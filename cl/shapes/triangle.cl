@@ -1,6 +1,7 @@
 // triangle: the triangles of meshes, flat or with interpolated normals.
 #include "core/lanes.cl"
 #include "core/math.cl"
+#include "core/rows.cl"
 #include "scene.cl"
 #include "shapes/interface.cl"
 #include "shapes/list.h"
@@ -63,12 +64,11 @@ static v3 shading_normal(const Scene *scene, CornerNormals corners, real u, real
 typedef struct { real u[3], v[3]; } CornerUvs;
 
 static CornerUvs corner_uvs(const Scene *scene, uints triangle) {
-    CornerUvs c = {{GATHER(real, scene->triangle_uvs, triangle, .corner[0][0]),
-                    GATHER(real, scene->triangle_uvs, triangle, .corner[1][0]),
-                    GATHER(real, scene->triangle_uvs, triangle, .corner[2][0])},
-                   {GATHER(real, scene->triangle_uvs, triangle, .corner[0][1]),
-                    GATHER(real, scene->triangle_uvs, triangle, .corner[1][1]),
-                    GATHER(real, scene->triangle_uvs, triangle, .corner[2][1])}};
+    global const uint *first = (global const uint *)scene->triangle_uvs;
+    uints word = triangle * (uint)(sizeof(TriangleUv) / 4);
+    FourWords row = four_words(first, word), last = four_words(first, word + 2u);
+    CornerUvs c = {{reals_of_words(row.a), reals_of_words(row.c), reals_of_words(last.c)},
+                   {reals_of_words(row.b), reals_of_words(row.d), reals_of_words(last.d)}};
     return c;
 }
 

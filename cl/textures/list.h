@@ -20,6 +20,17 @@ enum { OPAL_TEXTURES(OPAL_TEXTURE_ENUM) TEXTURE_COUNT };
 namespace opal {
 #endif
 
+// What bitmaps may be: one bit of each line. A kernel knows the bits that its scene's bitmaps have (OPAL_BITMAP_FORMS),
+// and asks a lane's record only where these differ.
+enum {
+    BITMAP_REPEAT = 1, BITMAP_MIRROR = 2, BITMAP_CLAMP = 4, // WRAP_*
+    BITMAP_BILINEAR = 8, BITMAP_NEAREST = 16,
+    BITMAP_GREY = 32, BITMAP_RGB = 64,                      // channels of a texel
+    BITMAP_ENCODED = 128, BITMAP_BYTES = 256, BITMAP_FLOATS = 512, // values: bytes of sRGB's curve, of 0 to 1; floats
+    BITMAP_UNMAPPED = 1024, BITMAP_MAPPED = 2048,           // whether to_uv moves texture coordinates
+    BITMAP_FORMS = 4095
+};
+
 // The records of the kinds. All begin with the kind. to_uv: the map from a surface's texture coordinates (u, v, 1) to
 // the texture's own.
 typedef struct {
@@ -28,15 +39,14 @@ typedef struct {
     float color0[3], color1[3];
 } texture_checkerboard_record;
 
+// A row of texels ends with one more: the first one again where the bitmap repeats, else the last. So a texel and its
+// right neighbour lie side by side.
 typedef struct {
     uint kind;
-    float to_uv[2][3];
     uint width, height;
-    uint channels;        // of a texel: 1, grey, or 3
-    uint first;           // its first value in the scene's texels: a byte if `decode` is not OPAL_NONE, else a float
-    uint decode;          // the word of the texels at which 256 floats begin: what the bytes mean
-    uint wrap;            // WRAP_*
-    uint nearest;         // 1: the nearest texel; 0: bilinear interpolation
+    uint first;           // its first value in the scene's texels, in bytes if these are bytes, else in floats
+    float to_uv[2][3];
+    uint form;            // BITMAP_*
 } texture_bitmap_record;
 
 // Of one mesh. Triangle i has the words first + stride * i, modulo 2^32, of the attributes: three corners, or one.

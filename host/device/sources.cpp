@@ -147,6 +147,8 @@ std::string program_text(const Features &features, const BuildOptions &options, 
     text += fmt::format("#define OPAL_NONZERO_bsdf_" #name " {}\n", features.nonzero[BSDF_##name]);
     OPAL_ALL_BSDFS(OPAL_TEXTURED_ROW)
 #undef OPAL_TEXTURED_ROW
+    text += fmt::format("#define OPAL_TEXTURE_KINDS {}\n", features.texture_kinds);
+    text += fmt::format("#define OPAL_BITMAP_FORMS {}\n", features.bitmap_forms);
     text += fmt::format("#define OPAL_PERTURBATIONS {}\n", features.perturbations);
 #define OPAL_AXIS_DEFINE(axis, needs, help)                                                                            \
     text += fmt::format("#define OPAL_AXIS_" #axis " {}\n", features.axes[AXIS_##axis]);

@@ -404,6 +404,9 @@ Features find_features(const SceneDescription &description, const FlatScene &sce
     features.loop = integrator_of(description.strategy).loop;
     features.textured = find_textured(scene, specialise);
     features.nonzero = find_nonzero(scene, specialise);
+    const bool any_texture = !specialise && !scene.textures.empty(); // then all is decided at run time
+    features.texture_kinds = any_texture ? (1u << TEXTURE_COUNT) - 1 : scene.texture_kinds;
+    features.bitmap_forms = any_texture ? uint(BITMAP_FORMS) : scene.bitmap_forms;
     if (integrator_of(description.strategy).has(OPAL_ASKS_BSDFS))
         for (const MeshRecord &mesh : scene.meshes)
             features.perturbations = std::max(features.perturbations, find_perturbations(scene, mesh.bsdf));
@@ -420,6 +423,8 @@ Features shared_features(const std::vector<FlatScene> &scenes) {
             shared.textured[kind] |= scene.features.textured[kind];
             shared.nonzero[kind] |= scene.features.nonzero[kind];
         }
+        shared.texture_kinds |= scene.features.texture_kinds;
+        shared.bitmap_forms |= scene.features.bitmap_forms;
         shared.perturbations = std::max(shared.perturbations, scene.features.perturbations);
         for (int axis = 0; axis < AXIS_COUNT; axis++)
             if (scene.features.axes[axis] != shared.axes[axis]) {

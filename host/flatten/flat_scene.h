@@ -28,6 +28,8 @@ struct Features {
     std::array<uint, BSDF_COUNT> textured{}; // by BSDF_*: the parameters that have a texture, a bit each in their order
     uint perturbations = 0;                  // the most BSDFs of a nest that change the shading normal
     std::array<uint, BSDF_COUNT> nonzero{};  // by BSDF_*: those that may be other than 0, of kinds of OPAL_MANY_LOBES
+    uint texture_kinds = 0;                  // of the scene's textures, bit TEXTURE_* each
+    uint bitmap_forms = 0;                   // of its bitmaps: BITMAP_*
     std::string loop = "render";             // the kernel file that drives the integrator
     std::array<int, AXIS_COUNT> axes{};      // CHOICE_* or -1
     std::array<std::string, AXIS_COUNT> axis_reasons;
@@ -45,7 +47,8 @@ struct FlatScene {
 #define OPAL_TABLE_ROWS(record, name, shown) LargeVector<record> name;
     OPAL_TABLES(OPAL_TABLE_ROWS)
 #undef OPAL_TABLE_ROWS
-    uint face_list_triangles = 0; // that `faces` stand for
+    uint texture_kinds = 0, bitmap_forms = 0; // as in Features, of the table of textures
+    uint face_list_triangles = 0;             // that `faces` stand for
     Features features;
 
     double sah_cost = 0;    // of the tree, in triangle block tests and node visits

@@ -227,6 +227,8 @@ FlatScene flatten(const SceneDescription &description, int lanes, bool with_face
                        with_face_list && lanes >= FACE_LIST_LANES, description.strategy.is_general(), scene);
     gather_emitters(description, flattening, extent.radius(), soup, textures, scene);
     scene.texels = textures.texels(free_picture);
+    scene.texture_kinds = textures.kinds();
+    scene.bitmap_forms = textures.bitmap_forms();
     if (!scene.textures.empty()) // as of BSDFs
         scene.textures.resize(scene.textures.size() + longest_texture_record / sizeof(uint));
     scene.features = find_features(description, scene, lanes);

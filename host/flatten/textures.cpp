@@ -26,8 +26,6 @@ void store_map(const UvTransform &map, float (&words)[2][3]) {
             words[row][column] = float(map[row][column]);
 }
 
-constexpr uint byte_values = 256;
-
 double mean_of(const CheckerboardTexture &texture) {
     return (luminance(texture.color0) + luminance(texture.color1)) / 2;
 }
@@ -74,15 +72,50 @@ std::vector<float> decoded_16_bits(bool encoded, bool is_half) {
     return values;
 }
 
-// Adds bytes to words, which they need not fill. Has the room been reserved, each page is touched once.
-void append(const void *bytes, std::size_t count, LargeVector<uint> &words) {
+// Adds rows of bytes to words, which they need not fill, and to each row the texel that follows its last one. Has the
+// room been reserved, each page is touched once.
+void append_rows(const Picture &picture, bool repeats, LargeVector<uint> &words) {
     constexpr std::size_t most = 1 << 20; // a block that stays in the cache between zeros and bytes
-    const auto *from = static_cast<const unsigned char *>(bytes);
-    for (std::size_t at = 0; at < count; at += most) {
-        const std::size_t block = std::min(most, count - at), first = words.size();
-        words.resize(first + (block + sizeof(uint) - 1) / sizeof(uint));
-        std::memcpy(&words[first], from + at, block);
+    const auto texel = std::size_t(picture.channels), row = texel * std::size_t(picture.width);
+    const std::uint8_t *from = picture.bytes.data();
+    const std::size_t end = sizeof(uint) * words.size() + (row + texel) * std::size_t(picture.height);
+    std::size_t at = sizeof(uint) * words.size();
+    for (int y = 0; y < picture.height; y++, from += row, at += row + texel) {
+        if (sizeof(uint) * words.size() < at + row + texel) {
+            const std::size_t block = std::min(std::max(most, row + texel), end - at);
+            words.resize((at + block + sizeof(uint) - 1) / sizeof(uint));
+        }
+        auto *to = reinterpret_cast<std::uint8_t *>(words.data()) + at;
+        std::memcpy(to, from, row);
+        std::memcpy(to + row, repeats ? from : from + row - texel, texel);
     }
+}
+
+// Likewise floats; word_of gives the word of each.
+template <class WordOf>
+void append_rows(const Picture &picture, bool repeats, WordOf word_of, LargeVector<uint> &words) {
+    const auto texel = std::size_t(picture.channels), row = texel * std::size_t(picture.width);
+    const float *from = picture.floats.data();
+    for (int y = 0; y < picture.height; y++, from += row) {
+        for (std::size_t i = 0; i < row; i++)
+            words.push_back(word_of(from[i]));
+        for (std::size_t i = 0; i < texel; i++)
+            words.push_back(word_of(from[repeats ? i : row - texel + i]));
+    }
+}
+
+// The kernels read so many words at once, of which the last texels may be fewer.
+constexpr std::size_t words_beyond = 4;
+
+uint form_of(const BitmapTexture &texture) {
+    const Picture &picture = *texture.picture;
+    uint form = texture.wrap == WRAP_repeat   ? BITMAP_REPEAT
+                : texture.wrap == WRAP_mirror ? BITMAP_MIRROR
+                                              : BITMAP_CLAMP;
+    form |= texture.nearest ? BITMAP_NEAREST : BITMAP_BILINEAR;
+    form |= picture.channels == 1 ? BITMAP_GREY : BITMAP_RGB;
+    form |= !has_bytes(picture) ? BITMAP_FLOATS : picture.encoded && !texture.raw ? BITMAP_ENCODED : BITMAP_BYTES;
+    return form | (texture.to_uv == identity_uv ? BITMAP_UNMAPPED : BITMAP_MAPPED);
 }
 
 } // namespace
@@ -104,19 +137,19 @@ std::vector<uint> TextureGatherer::words(const BitmapTexture &texture) {
     const Picture &picture = *texture.picture;
     const bool encoded = picture.encoded && !texture.raw, is_byte = has_bytes(picture);
     const bool is_half = picture.encoded && !is_byte && !texture.full_precision; // of 16 bits, as Mitsuba holds them
-    const std::size_t first = place_of(picture, is_byte || !encoded ? is_half ? Values::half : Values::as_they_are
-                                                : is_half           ? Values::decoded_half
-                                                                    : Values::decoded);
+    const std::size_t first = place_of(picture,
+                                       is_byte || !encoded ? is_half ? Values::half : Values::as_they_are
+                                       : is_half           ? Values::decoded_half
+                                                           : Values::decoded,
+                                       texture.wrap == WRAP_repeat);
     texture_bitmap_record record{};
     record.kind = TEXTURE_bitmap;
-    store_map(texture.to_uv, record.to_uv);
     record.width = uint(picture.width);
     record.height = uint(picture.height);
-    record.channels = uint(picture.channels);
     record.first = uint(is_byte ? sizeof(uint) * first : first);
-    record.decode = !is_byte ? OPAL_NONE : encoded ? byte_values : 0;
-    record.wrap = texture.wrap;
-    record.nearest = texture.nearest;
+    store_map(texture.to_uv, record.to_uv);
+    record.form = form_of(texture);
+    bitmap_forms_ |= record.form;
     return words_of(record);
 }
 
@@ -134,20 +167,18 @@ std::vector<uint> TextureGatherer::words(const MeshAttributeTexture &texture) {
     return words_of(record);
 }
 
-// The texels begin with two tables of floats, what bytes mean. Bytes of all pictures follow as the files have them, and
-// floats.
-std::size_t TextureGatherer::place_of(const Picture &picture, Values values) {
+// Bytes of all pictures as the files have them, and floats.
+std::size_t TextureGatherer::place_of(const Picture &picture, Values values, bool repeats) {
     for (const Stored &known : stored_)
-        if (known.picture == &picture && known.values == values)
+        if (known.picture == &picture && known.values == values && known.repeats == repeats)
             return known.first;
-    if (stored_.empty())
-        words_ = 2 * byte_values;
-    const std::size_t count = std::size_t(picture.channels) * std::size_t(picture.width) * std::size_t(picture.height);
+    const std::size_t count =
+        std::size_t(picture.channels) * (std::size_t(picture.width) + 1) * std::size_t(picture.height);
     const std::size_t first = words_;
     words_ += has_bytes(picture) ? (count + sizeof(uint) - 1) / sizeof(uint) : count;
-    if (sizeof(uint) * words_ > std::numeric_limits<uint>::max())
+    if (sizeof(uint) * (words_ + words_beyond) > std::numeric_limits<uint>::max())
         throw Error("the textures have more than 4 GiB of texels together");
-    stored_.push_back({&picture, values, first});
+    stored_.push_back({&picture, values, repeats, first});
     return first;
 }
 
@@ -155,32 +186,34 @@ LargeVector<uint> TextureGatherer::texels(const std::function<void(const Picture
     LargeVector<uint> texels;
     if (stored_.empty())
         return texels;
-    texels.reserve(words_);
-    for (const bool encoded : {false, true})
-        for (const double value : decoded_bytes(encoded))
-            texels.push_back(std::bit_cast<uint>(float(value)));
+    texels.reserve(words_ + words_beyond);
     for (auto stored = stored_.begin(); stored != stored_.end(); ++stored) {
         const Picture &picture = *stored->picture;
         if (has_bytes(picture)) {
-            append(picture.bytes.data(), picture.bytes.size(), texels);
+            append_rows(picture, stored->repeats, texels);
         } else if (stored->values == Values::as_they_are) {
-            append(picture.floats.data(), sizeof(float) * picture.floats.size(), texels);
+            append_rows(
+                picture, stored->repeats, [](float value) { return std::bit_cast<uint>(value); }, texels);
         } else {
             const std::vector<float> decoded =
                 decoded_16_bits(stored->values != Values::half, stored->values != Values::decoded);
-            for (const float value : picture.floats)
-                texels.push_back(std::bit_cast<uint>(decoded[std::size_t(std::lround(value * most_of_16_bits))]));
+            const auto word_of = [&](float value) {
+                return std::bit_cast<uint>(decoded[std::size_t(std::lround(value * most_of_16_bits))]);
+            };
+            append_rows(picture, stored->repeats, word_of, texels);
         }
         const bool is_last =
             std::none_of(stored + 1, stored_.end(), [&](const Stored &later) { return later.picture == &picture; });
         if (free && is_last)
             free(picture);
     }
+    texels.resize(texels.size() + words_beyond);
     return texels;
 }
 
 uint TextureGatherer::add(const Texture &texture) {
     const std::vector<uint> record = std::visit([this](const auto &own) { return words(own); }, texture);
+    kinds_ |= 1u << record[0];
     const auto [found, is_new] = known_.try_emplace(record, uint(table_.size()));
     if (is_new)
         table_.insert(table_.end(), record.begin(), record.end());

@@ -28,6 +28,9 @@ public:
     // it is copied; empty if pictures stay.
     LargeVector<uint> texels(const std::function<void(const Picture &)> &free) const;
 
+    uint kinds() const { return kinds_; }               // bit TEXTURE_* of each
+    uint bitmap_forms() const { return bitmap_forms_; } // BITMAP_* of all bitmaps
+
 private:
     // How a picture's values become texels.
     enum class Values {
@@ -39,6 +42,7 @@ private:
     struct Stored {
         const Picture *picture;
         Values values;
+        bool repeats;      // whether a row's last texel is followed by the first one again, or by itself
         std::size_t first; // word of the texels
     };
 
@@ -47,11 +51,12 @@ private:
     std::map<std::vector<uint>, uint> known_; // first word of each record
     std::vector<Stored> stored_;
     std::size_t words_ = 0; // of the texels
+    uint kinds_ = 0, bitmap_forms_ = 0;
 
     std::vector<uint> words(const CheckerboardTexture &texture);
     std::vector<uint> words(const BitmapTexture &texture);
     std::vector<uint> words(const MeshAttributeTexture &texture);
-    std::size_t place_of(const Picture &picture, Values values);
+    std::size_t place_of(const Picture &picture, Values values, bool repeats);
 };
 
 } // namespace opal

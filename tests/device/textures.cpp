@@ -43,6 +43,7 @@ FlatScene textured_scene() {
     glossy.n.texture = 4;
     FlatScene scene = scene_of_bsdfs({red, bsdf_diffuse_record{.albedo = 0.6}, glossy, bsdf_phong_record{.n = 10}});
     scene.textures = {0, word(0.5f), word(0.25f), word(1), 0, word(0.25f), word(0.25f), word(0.25f)};
+    scene.features.texture_kinds = 1;             // that of with_constant_texture
     scene.features.textured[BSDF_diffuse] = 1;    // albedo
     scene.features.textured[BSDF_phong] = 1 << 3; // n
     return scene;

@@ -54,17 +54,42 @@ TEST_CASE("Bytes stay bytes, 16 bits become half floats or floats, each picture 
     const texture_bitmap_record a = record_at(table, first), b = record_at(table, second);
     CHECK(a.first == b.first);
     REQUIRE(a.first % sizeof(uint) == 0);
-    CHECK(texels[a.first / sizeof(uint)] == 0x030201);
-    CHECK(value(a.decode + 128) == Approx(0.2158605));
-    CHECK(value(b.decode + 128) == Approx(128 / 255.));
+    CHECK(texels[a.first / sizeof(uint)] == 0x01030201); // a row, and its first texel again
+    CHECK(a.form == (BITMAP_REPEAT | BITMAP_BILINEAR | BITMAP_GREY | BITMAP_ENCODED | BITMAP_UNMAPPED));
+    CHECK(b.form == (BITMAP_REPEAT | BITMAP_BILINEAR | BITMAP_GREY | BITMAP_BYTES | BITMAP_UNMAPPED));
     for (const auto &[at, mean] : {std::pair(half, 0.2158203), {raw_half, 0.5019531}, {full, 0.2158605}}) { // Mitsuba
         const texture_bitmap_record record = record_at(table, at);
-        CHECK(record.decode == OPAL_NONE);
+        CHECK((record.form & BITMAP_FLOATS) != 0);
         CHECK(value(record.first) == Approx(mean).margin(1e-7));
         CHECK(value(record.first + 1) == 1);
+        CHECK(value(record.first + 2) == value(record.first));
     }
     const texture_bitmap_record c = record_at(table, floats);
     CHECK(value(c.first) == -2);
     CHECK(value(c.first + 2) == 0.1f);
-    CHECK(texels.size() == 512 + 1 + 3 * 2 + 3);
+    CHECK(texels.size() == 1 + 3 * 3 + 2 * 3 + 4);
+    CHECK(gatherer.kinds() == 1u << TEXTURE_bitmap);
+    CHECK(gatherer.bitmap_forms() ==
+          (a.form | b.form | record_at(table, half).form | record_at(table, raw_half).form | c.form));
+}
+
+TEST_CASE("A row of texels ends with the one that follows: the first where the bitmap repeats, else the last",
+          "[texels]") {
+    const auto picture = picture_of(2, 3);
+    picture->height = 2;
+    picture->bytes = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+    LargeVector<uint> table;
+    TextureGatherer gatherer(table, {});
+    std::vector<uint> at;
+    for (const uint wrap : {WRAP_repeat, WRAP_mirror, WRAP_clamp})
+        at.push_back(gatherer.add(BitmapTexture{.picture = picture, .wrap = wrap}));
+    const LargeVector<uint> texels = gatherer.texels({});
+    const auto bytes_of = [&](uint record) {
+        std::vector<unsigned char> bytes(18);
+        std::memcpy(bytes.data(), reinterpret_cast<const char *>(texels.data()) + record_at(table, record).first, 18);
+        return bytes;
+    };
+    CHECK(bytes_of(at[0]) == std::vector<unsigned char>{1, 2, 3, 4, 5, 6, 1, 2, 3, 7, 8, 9, 10, 11, 12, 7, 8, 9});
+    CHECK(bytes_of(at[1]) == std::vector<unsigned char>{1, 2, 3, 4, 5, 6, 4, 5, 6, 7, 8, 9, 10, 11, 12, 10, 11, 12});
+    CHECK(record_at(table, at[1]).first == record_at(table, at[2]).first);
 }
