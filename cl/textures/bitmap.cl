@@ -98,7 +98,7 @@ static real byte_value(uints byte, Bitmap b) {
     p = mul_add(z, mul_add(z, p, (real)(R(0.280400666))), (real)(R(1.16744069)));
     p = mul_add(z, mul_add(z, p, (real)(R(0.925584018))), (real)(R(0.214040955)));
     real linear = x * (b.encoded ? (real)(1 / (R(255.0) * R(12.92))) : (real)(1 / R(255.0)));
-    return b.encoded & (x > R(10.5)) ? real_min(p, (real)(1)) : linear;
+    return (b.encoded & (x > R(10.5))) ? real_min(p, (real)(1)) : linear;
 }
 
 static v3 byte_color(uints bytes, Bitmap b) {
