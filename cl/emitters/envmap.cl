@@ -14,6 +14,7 @@
 typedef struct {
     v3 x, y, z;           // its axes in world space
     uints width, height;
+    real half_turn;       // from row to row, in turns: half a turn over the rows between the poles
 } EnvironmentView;
 
 // A place in a cell: texels to its left and right, its upper row, and how far it is from these, 0 to 1.
@@ -35,7 +36,8 @@ static global const emitter_envmap_record *environment_record(const Scene *scene
 static EnvironmentView environment_view(const Scene *scene) {
     global const emitter_envmap_record *record = environment_record(scene);
     EnvironmentView map = {v3_from(record->to_local[0]), v3_from(record->to_local[1]), v3_from(record->to_local[2]),
-                           (uints)(record->width), (uints)(record->height)};
+                           (uints)(record->width), (uints)(record->height),
+                           (real)(R(0.5) / (real1)(record->height - 1u))};
     return map;
 }
 
@@ -87,7 +89,7 @@ static v3 environment_color(EnvironmentCorners at, EnvironmentPlace place) {
 
 // The sine of the angle between the map's y and a row, which lies `from_pole` rows from the nearer pole.
 static real sine_of_row(real from_pole, EnvironmentView map) {
-    return cos_sin_2pi(from_pole * (R(0.5) / to_real(map.height - 1u))).y;
+    return sin_2pi_of_quarter(from_pole * map.half_turn);
 }
 
 static real rows_from_pole(EnvironmentView map, uints row) {
@@ -145,8 +147,8 @@ static LightSample emitter_envmap_sample(const Scene *scene, uints id, v3 color,
 
     // Sines keep their digits near both poles.
     real above = to_real(place.row) + place.t, below = to_real(map.height - 1u - place.row) - place.t;
-    v2 polar = cos_sin_2pi(real_min(above, below) * (R(0.5) / to_real(map.height - 1u)));
-    real cosine = above < below ? polar.x : -polar.x, sine = polar.y;
+    real polar = real_min(above, below) * map.half_turn, sine = sin_2pi_of_quarter(polar);
+    real from_equator = sin_2pi_of_quarter(R(0.25) - polar), cosine = above < below ? from_equator : -from_equator;
     v2 turn = cos_sin_2pi((to_real(place.left) + place.s + R(0.5)) / to_real(map.width));
     v3 d = v3_mad(map.x, sine * turn.y, v3_mad(map.y, cosine, v3_scale(map.z, -sine * turn.x)));
     mask active = density > 0;

@@ -73,7 +73,7 @@ static TexelPair texels_at(real x, uints size, Bitmap b) {
     share = back ? 1 - share : share;
     ints repeated = i < 0 ? last : i > last ? (ints)(0) : i; // n and more: where rounding led to 1
     i = to_ints(b.repeats) ? repeated : i;
-    mask alone = to_mask(i < 0) | b.nearest; // before the first one there is the first one again
+    mask alone = (!b.repeats & to_mask(i < 0)) | b.nearest; // before the first one there is the first one again
     i = i < 0 ? 0 : i;
     TexelPair pair = {as_unsigned(i < last ? i : last), alone ? (real)(0) : share,
                       alone ? (real)(0) : back ? (real)(-1) : (real)(1)};
