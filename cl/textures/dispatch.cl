@@ -17,7 +17,7 @@ static mask texture_lanes(const Scene *scene, uints at, uint wanted) {
 
 // The factor that the textures `at` give a parameter at `point`: 1 in lanes that are not active or have no texture
 // (OPAL_UNTEXTURED).
-static v3 texture_color(const Scene *scene, uints at, TexturePoint point, mask active) {
+static CALLED v3 texture_color(const Scene *scene, uints at, TexturePoint point, mask active) {
     v3 factor = v3_all((real)(1));
     mask textured = active & to_mask(at != OPAL_UNTEXTURED);
     at = uints_pick(textured, at, (uints)(0));
