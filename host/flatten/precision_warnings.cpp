@@ -162,7 +162,7 @@ private:
 
     // The fit of the reflectance from inside leaves the base too much light.
     void check(const bsdf_plastic_record &plastic, const SourcePlace &place) {
-        constexpr double told = 1.002; // up to an index of 1.9 even a white base stays below it
+        constexpr double told = 1.002; // up to an index of 2 even a white base stays below it
         if (plastic.int_ior.value == plastic.ext_ior.value)
             add_warning(place, "intIOR and extIOR are both {:g}: the coat reflects nothing", plastic.int_ior.value);
         const double eta = double(plastic.ext_ior.value) / plastic.int_ior.value;
