@@ -317,7 +317,7 @@ int render_scene(const Options &o) {
         info(choice->text());
         scene.strategy = choice->strategy;
     }
-    scene.strategy.few_paths = suits_general_kernel(pick.info, paths_asked(request, pick.info));
+    scene.strategy.few_paths = suits_general_kernel(pick.info, paths_asked(request, pick.info), scene);
     const Stopwatch bvh;
     FlatScene flat = flatten_and_free(scene, build.lanes);
     const double bvh_seconds = bvh.seconds();

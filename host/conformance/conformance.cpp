@@ -64,7 +64,7 @@ private:
         scene.camera.filter = {};
         const size_t pixels = size_t(scene.camera.width) * size_t(scene.camera.height);
         scene.spp = unsigned(std::max<size_t>(2, (size_t(test_.sample_count) + pixels - 1) / pixels));
-        scene.strategy.few_paths = suits_general_kernel(device_.info, double(pixels) * scene.spp);
+        scene.strategy.few_paths = suits_general_kernel(device_.info, double(pixels) * scene.spp, scene);
 
         RenderOptions render;
         render.build = options_.build;

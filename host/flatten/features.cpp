@@ -413,6 +413,22 @@ Features find_features(const SceneDescription &description, const FlatScene &sce
     return features;
 }
 
+bool shares_general_kernel(const SceneDescription &scene) {
+    const auto is_own = [](const Bsdf &bsdf) {
+#define OPAL_OWN_BSDF(name, traits) (has_general_kernel(FEATURE_bsdf_##name) && bsdf.leads_to(BSDF_##name)) ||
+        return OPAL_ALL_BSDFS(OPAL_OWN_BSDF) false;
+#undef OPAL_OWN_BSDF
+    };
+    const auto is_own_light = [](const Light &light) {
+#define OPAL_OWN_EMITTER(name, traits) (has_general_kernel(FEATURE_emitter_##name) && light.kind() == EMITTER_##name) ||
+        return OPAL_EMITTERS(OPAL_OWN_EMITTER) false;
+#undef OPAL_OWN_EMITTER
+    };
+    return !needs_uv(scene) && !scene.hides_emitters &&
+           std::ranges::none_of(scene.meshes, [&](const Mesh &mesh) { return mesh.texture || is_own(mesh.bsdf); }) &&
+           std::ranges::none_of(scene.lights, is_own_light);
+}
+
 Features shared_features(const std::vector<FlatScene> &scenes) {
     Features shared = scenes.at(0).features;
     for (const FlatScene &scene : scenes) {

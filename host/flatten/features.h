@@ -14,6 +14,10 @@ const char *feature_name(unsigned feature);
 // cost most scenes more than they save a few, and all axes are -1, decided at run time.
 Features find_features(const SceneDescription &description, const FlatScene &scene, int lanes);
 
+// Has the scene nothing that a general kernel lacks until a scene asks for it: textures, skies that are images, most of
+// the materials that Nori has not? Then the general kernel is the one that other scenes have compiled already.
+bool shares_general_kernel(const SceneDescription &scene);
+
 // The features of one kernel that renders all of these variants of a scene: a feature that any variant needs is on, and
 // an axis on which variants differ is decided at run time.
 Features shared_features(const std::vector<FlatScene> &scenes);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "device/context.h"
+#include "scene/scene.h"
 
 namespace opal {
 
@@ -15,6 +16,9 @@ constexpr double paths_that_pay = 1 << 25;
 // GPUs' compilers take longer for the general kernel than for a scene's own.
 // paths: pixels times samples; infinite where only an error is asked for.
 bool suits_general_kernel(const DeviceInfo &device, double paths);
+// The same for one render of this scene. A general kernel that is not the one of all scenes takes longer to compile
+// than a kernel of this scene, and saves later scenes nothing (shares_general_kernel).
+bool suits_general_kernel(const DeviceInfo &device, double paths, const SceneDescription &scene);
 
 // The paths that a render of so many seconds is taken to have on that device.
 double paths_in(const DeviceInfo &device, double seconds);

@@ -391,6 +391,41 @@ PREVIEW = """
         <rgb name="diffuse_reflectance" value="0.06, 0.24, 0.36"/>
         <float name="alpha" value="0.15"/>
     </bsdf>
+    <bsdf type="principled" id="car_paint">
+        <rgb name="base_color" value="0.35, 0.02, 0.03"/>
+        <float name="metallic" value="0.6"/>
+        <float name="roughness" value="0.45"/>
+        <float name="clearcoat" value="1"/>
+        <float name="clearcoat_gloss" value="0.95"/>
+    </bsdf>
+    <bsdf type="principled" id="velvet">
+        <rgb name="base_color" value="0.16, 0.05, 0.22"/>
+        <float name="roughness" value="0.9"/>
+        <float name="spec_tint" value="1"/>
+        <float name="sheen" value="1"/>
+        <float name="sheen_tint" value="0.6"/>
+    </bsdf>
+    <bsdf type="principledthin" id="paper_lantern">
+        <rgb name="base_color" value="0.85, 0.72, 0.5"/>
+        <float name="roughness" value="0.6"/>
+        <float name="diff_trans" value="1.2"/>
+    </bsdf>
+    <bsdf type="blendbsdf" id="inlay">
+        <texture name="weight" type="checkerboard">
+            <float name="color0" value="0"/>
+            <float name="color1" value="1"/>
+            <transform name="to_uv">
+                <scale x="14" y="7"/>
+            </transform>
+        </texture>
+        <bsdf type="roughconductor">
+            <string name="material" value="Cr"/>
+            <float name="alpha" value="0.15"/>
+        </bsdf>
+        <bsdf type="plastic">
+            <rgb name="diffuse_reflectance" value="0.05, 0.16, 0.09"/>
+        </bsdf>
+    </bsdf>
 """
 
 

@@ -54,6 +54,32 @@ TEST_CASE("The kernel is chosen by what is asked, and stands in JSON and EXR", "
     CHECK(kernel_of("--target-error 50% --specialise off") == "general by off");
 }
 
+TEST_CASE("A scene that other scenes' general kernel cannot render has a kernel of its own from the start",
+          "[specialise]") {
+    const ScratchFolder folder;
+    const auto kernel_of = [&](const std::string &arguments) {
+        return rendered(folder, scenes + arguments)["kernel"].get<std::string>();
+    };
+    CHECK(kernel_of("preview.xml --width 8 --spp 1 -D material=gold") == "special"); // a texture, a metal
+    CHECK(kernel_of("sky_over_model.xml --width 8 --spp 1") == "special");
+    CHECK(kernel_of("spheres.xml --width 8 --spp 1") == "general");
+    CHECK(kernel_of("mixed_room.xml --width 8 --spp 1") == "general");
+    DeviceInfo cpu;
+    cpu.type = "cpu";
+    const auto suits = [&](const Bsdf &bsdf) {
+        SceneDescription scene;
+        scene.meshes.emplace_back().bsdf = bsdf;
+        return suits_general_kernel(cpu, 1, scene);
+    };
+    CHECK(suits(bsdf_microfacet_record{}));
+    CHECK_FALSE(suits(bsdf_plastic_record{}));
+    Bsdf both = bsdf_twosided_record{};
+    both.children = {Bsdf(bsdf_diffuse_record{})};
+    CHECK(suits(both));
+    both.children = {Bsdf(bsdf_roughplastic_record{})};
+    CHECK_FALSE(suits(both));
+}
+
 TEST_CASE("After opal cache --warm no scene or strategy compiles a kernel for few paths", "[specialise]") {
     const ScratchFolder folder;
     const std::string cache = "POCL_CACHE_DIR=" + (folder / "cache").string() + " " OPAL_BINARY " ";

@@ -1,5 +1,5 @@
-// many_lanes/rows: neighbouring words of each lane by one load a lane. Vectors of eight lanes, and of four in kernels of
-// four, exchange rows with columns within their halves, as AVX does it at once; sixteen lanes are two of these.
+// many_lanes/rows: neighbouring words of each lane by one load a lane. Vectors of eight lanes, and of four in kernels
+// of four, exchange rows with columns within their halves, as AVX does it at once; sixteen lanes are two of these.
 #include "core/lanes.cl"
 
 #if LANES == 4
