@@ -1,7 +1,5 @@
 #include "flatten/plastic_boundary.h"
 
-#include "stats/quadrature.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -165,9 +163,14 @@ double diffuse_reflectance_fit(double eta) {
 }
 
 double diffuse_reflectance(double eta) {
-    const auto integrand = [&](double cosine) { return 2 * cosine * Fresnel(cosine, eta).reflectance; };
-    const double critical = eta < 1 ? std::sqrt(1 - square(eta)) : 0; // below it all is reflected
-    return square(critical) + stats::integrate(integrand, critical, 1).value;
+    const double critical = eta < 1 ? std::sqrt(1 - square(eta)) : 0; // below this cosine all is reflected
+    const Rule rule = gauss_legendre(64);
+    double sum = square(critical);
+    for (size_t i = 0; i < rule.points.size(); i++) { // over the root of what the cosine is above it: that is smooth
+        const double root = rule.points[i], cosine = critical + (1 - critical) * square(root);
+        sum += rule.weights[i] * 2 * root * (1 - critical) * 2 * cosine * Fresnel(cosine, eta).reflectance;
+    }
+    return sum;
 }
 
 std::vector<float> plastic_boundary(const bsdf_plastic_record &plastic) {
