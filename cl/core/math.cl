@@ -14,17 +14,6 @@ static real real_min(real a, real b) { return a < b ? a : b; }
 static real real_max(real a, real b) { return a > b ? a : b; }
 static real safe_sqrt(real x) { return sqrt(real_max(x, (real)(0))); }
 
-// sin of 2 pi u for u from 0 to 1/4: its Taylor series ends below half an ulp, relatively (x^15/15! < 2^-30).
-static v2 cos_sin_2pi(real u);
-static real sin_2pi_of_quarter(real u) {
-    if (OPAL_DOUBLE) return cos_sin_2pi(u).y;
-    real x = u * R(6.28318530717958647693), x2 = x * x;
-    real s = mul_add(x2, (real)(R(1.6059043836821613e-10)), (real)(R(-2.5052108385441720e-08)));
-    s = mul_add(x2, mul_add(x2, s, (real)(R(2.7557319223985893e-06))), (real)(R(-1.9841269841269841e-04)));
-    s = mul_add(x2, mul_add(x2, s, (real)(R(8.3333333333333333e-03))), (real)(R(-1.6666666666666667e-01)));
-    return mul_add(x * x2, s, x);
-}
-
 // cos and sin of 2 pi u (x and y) for any u of moderate size. u is reduced exactly to an eighth of a turn, where the
 // Taylor series ends below half an ulp (x^11/11! < 2^-28; in double x^19/19! < 2^-57). The library's argument reduction
 // costs more.
@@ -51,6 +40,16 @@ static v2 cos_sin_2pi(real u) {
     mask odd = turn == 1 | turn == 3;
     real cosine = odd ? s : c, sine = odd ? c : s;
     return v2_of((turn == 1 | turn == 2) ? -cosine : cosine, turn >= 2 ? -sine : sine);
+}
+
+// sin of 2 pi u for u from 0 to 1/4: its Taylor series ends below half an ulp, relatively (x^15/15! < 2^-30).
+static real sin_2pi_of_quarter(real u) {
+    if (OPAL_DOUBLE) return cos_sin_2pi(u).y;
+    real x = u * R(6.28318530717958647693), x2 = x * x;
+    real s = mul_add(x2, (real)(R(1.6059043836821613e-10)), (real)(R(-2.5052108385441720e-08)));
+    s = mul_add(x2, mul_add(x2, s, (real)(R(2.7557319223985893e-06))), (real)(R(-1.9841269841269841e-04)));
+    s = mul_add(x2, mul_add(x2, s, (real)(R(8.333333333333333e-03))), (real)(R(-1.6666666666666667e-01)));
+    return mul_add(x * x2, s, x);
 }
 
 // The angle from the x axis to the point (x, y) as a share of a whole turn, -1/2 to 1/2; 0 at the origin. The

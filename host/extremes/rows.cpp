@@ -115,6 +115,25 @@ SceneDescription sky_of_contrast(double contrast) {
     return floor_lit_by({sky, {}}, 40);
 }
 
+// A floor with a texture of 4 x 4 texels that is repeated that often along each side.
+SceneDescription repeated_texture(double times) {
+    const auto picture = std::make_shared<Picture>();
+    picture->width = picture->height = 4;
+    picture->channels = 1;
+    picture->encoded = true;
+    picture->bytes = {240, 20, 130, 60, 90, 200, 10, 170, 50, 110, 250, 30, 180, 70, 150, 220};
+    Bsdf textured = diffuse(1);
+    textured.textures[bsdf_parameters(textured.kind())[0].texture_word] = BitmapTexture{.picture = picture};
+    SceneDescription scene = floor_under(lamp_over({0, 1, 0}, 1, 1), textured);
+    const auto last = float(times);
+    auto &floor = std::get<TriangleMesh>(scene.meshes[0].shape);
+    for (const Vec3 &corner : floor.positions)
+        floor.uvs.push_back({corner.x < 0 ? 0 : last, corner.z < 0 ? 0 : last});
+    for (const auto &triangle : floor.triangles)
+        floor.uv_corners.push_back({triangle[0].position, triangle[1].position, triangle[2].position});
+    return scene;
+}
+
 SceneDescription rough_floor(double alpha) { return floor_under(lamp_over({0, 0.6, 1}, 0.5, 4), microfacet(alpha)); }
 // A glossy floor seen from `degrees` above its plane.
 SceneDescription grazed_floor(double degrees) {
@@ -458,6 +477,13 @@ const std::vector<StressRow> &stress_rows() {
          .promised_from = 1,
          .promised_to = 1e6,
          .picture = sky_of_contrast},
+        {.name = "uv",
+         .stretched = "texture coordinates of a floor's far corner, whose texture repeats",
+         .values = decades(0, 8),
+         .start = 1,
+         .promised_from = 1,
+         .promised_to = 1e6,
+         .picture = repeated_texture},
         {.name = "alpha",
          .stretched = "roughness of a microfacet floor",
          .values = reversed(decades(-6, 0)),
