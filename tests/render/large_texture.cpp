@@ -54,9 +54,8 @@ TEST_CASE("A JPEG of 16384 x 16384 pixels takes 900 MB of the device and 2 GB of
   <shape type="rectangle"><bsdf type="diffuse"><texture type="bitmap" name="reflectance">
     <string name="filename" value="large.jpg"/></texture></bsdf></shape>
 </scene>)");
-    const std::vector<std::string> render{"render",   folder / "large.xml", "--spp",    "1",
-                                          "--device", wanted_device(),      "--no-png", "--quiet",
-                                          "-o",       folder / "large.exr"};
+    const std::vector<std::string> render{"render",        folder / "large.xml", "--spp",   "1",  "--device",
+                                          wanted_device(), "--no-png",           "--quiet", "-o", folder / "large.exr"};
     peak_bytes_of_opal(render); // compiles
     const double peak = peak_bytes_of_opal(render);
     CHECK(peak <= 2e9);
