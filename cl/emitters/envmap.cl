@@ -7,6 +7,7 @@
 #include "core/rng.cl"
 #include "core/rows.cl"
 #include "emitters/interface.cl"
+#include "emitters/list.h"
 #include "scene.cl"
 #include "surface.cl"
 

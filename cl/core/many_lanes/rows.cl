@@ -7,7 +7,7 @@
 #else
 #define PART 8
 #endif
-typedef CAT(uint, PART) part;
+typedef CAT(uint, PART) lanes_part;
 #define OF_PART(name) CAT(name, PART)
 
 // x0 y0 x1 y1 and x2 y2 x3 y3; of four columns at a time.
@@ -23,13 +23,13 @@ typedef CAT(uint, PART) part;
 #define ROWS_4(at, k, beside) WORDS_OF(at, k)
 #define ROWS_8(at, k, beside) (uint8)(WORDS_OF(at, k), WORDS_OF(at, beside))
 
-typedef struct { part a, b, c, d; } FourWordsOfPart;
+typedef struct { lanes_part a, b, c, d; } FourWordsOfPart;
 
-static FourWordsOfPart four_words_of_part(global const uint *words, part at) {
-    part r0 = OF_PART(ROWS_)(at, 0, 4), r1 = OF_PART(ROWS_)(at, 1, 5);
-    part r2 = OF_PART(ROWS_)(at, 2, 6), r3 = OF_PART(ROWS_)(at, 3, 7);
-    part ab_even = WOVEN_LOW(r0, r2), ab_odd = WOVEN_LOW(r1, r3);
-    part cd_even = WOVEN_HIGH(r0, r2), cd_odd = WOVEN_HIGH(r1, r3);
+static FourWordsOfPart four_words_of_part(global const uint *words, lanes_part at) {
+    lanes_part r0 = OF_PART(ROWS_)(at, 0, 4), r1 = OF_PART(ROWS_)(at, 1, 5);
+    lanes_part r2 = OF_PART(ROWS_)(at, 2, 6), r3 = OF_PART(ROWS_)(at, 3, 7);
+    lanes_part ab_even = WOVEN_LOW(r0, r2), ab_odd = WOVEN_LOW(r1, r3);
+    lanes_part cd_even = WOVEN_HIGH(r0, r2), cd_odd = WOVEN_HIGH(r1, r3);
     FourWordsOfPart rows = {WOVEN_LOW(ab_even, ab_odd), WOVEN_HIGH(ab_even, ab_odd), WOVEN_LOW(cd_even, cd_odd),
                             WOVEN_HIGH(cd_even, cd_odd)};
     return rows;
@@ -45,37 +45,10 @@ static FourWordsOfPart four_words_of_part(global const uint *words, part at) {
 #define EVEN_8(x, y) (uint8)(EVEN_4((x).lo, (y).lo), EVEN_4((x).hi, (y).hi))
 #define ODD_8(x, y) (uint8)(ODD_4((x).lo, (y).lo), ODD_4((x).hi, (y).hi))
 
-typedef struct { part low, high; } EightBytesOfPart;
+typedef struct { lanes_part low, high; } EightBytesOfPart;
 
-static EightBytesOfPart eight_bytes_of_part(global const uint *words, part at) {
-    part first = OF_PART(BYTES_)(at, 0, 1, 4, 5), second = OF_PART(BYTES_)(at, 2, 3, 6, 7);
+static EightBytesOfPart eight_bytes_of_part(global const uint *words, lanes_part at) {
+    lanes_part first = OF_PART(BYTES_)(at, 0, 1, 4, 5), second = OF_PART(BYTES_)(at, 2, 3, 6, 7);
     EightBytesOfPart bytes = {OF_PART(EVEN_)(first, second), OF_PART(ODD_)(first, second)};
-    return bytes;
-}
-
-typedef struct { uints a, b, c, d; } FourWords;
-typedef struct { uints low, high; } EightBytes;
-
-// words[at] to words[at + 3] of each lane.
-static FourWords four_words(global const uint *words, uints at) {
-#if LANES == 16
-    FourWordsOfPart lo = four_words_of_part(words, at.lo), hi = four_words_of_part(words, at.hi);
-    FourWords rows = {(uint16)(lo.a, hi.a), (uint16)(lo.b, hi.b), (uint16)(lo.c, hi.c), (uint16)(lo.d, hi.d)};
-#else
-    FourWordsOfPart all = four_words_of_part(words, at);
-    FourWords rows = {all.a, all.b, all.c, all.d};
-#endif
-    return rows;
-}
-
-// Bytes at .. at + 7 of the words, the first one lowest.
-static EightBytes eight_bytes(global const uint *words, uints at) {
-#if LANES == 16
-    EightBytesOfPart lo = eight_bytes_of_part(words, at.lo), hi = eight_bytes_of_part(words, at.hi);
-    EightBytes bytes = {(uint16)(lo.low, hi.low), (uint16)(lo.high, hi.high)};
-#else
-    EightBytesOfPart all = eight_bytes_of_part(words, at);
-    EightBytes bytes = {all.low, all.high};
-#endif
     return bytes;
 }
