@@ -43,8 +43,9 @@ static real fresnel_metal(real cosine, real sin2, real eta, real k) {
     real twice_a_cosine = 2 * cosine * (difference >= 0 ? larger : smaller);
     real s = length + cos2, p = mul_add(length, cos2, square(sin2));
     real r_s = (s - twice_a_cosine) / (s + twice_a_cosine);
-    real r_p = r_s * (p - twice_a_cosine * sin2) / (p + twice_a_cosine * sin2);
-    return R(0.5) * (r_s + r_p);
+    real p_difference = p - twice_a_cosine * sin2, p_sum = p + twice_a_cosine * sin2;
+    real r_p = p_sum > 0 ? r_s * p_difference / p_sum : r_s; // an index of 0, seen from above
+    return real_max(R(0.5) * (r_s + r_p), (real)(0)); // an index of 1 leaves the rounding
 }
 
 static v3 fresnel_conductor(real cosine, real sin2, v3 eta, v3 k) {

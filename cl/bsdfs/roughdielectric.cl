@@ -111,7 +111,10 @@ static BsdfSample roughdielectric_sample(roughdielectric_bsdf b, v3 wi, v2 u, re
     mask kept = up.z > 0 & facet.cosine > 0 & (reflects ? wo.z : -wo.z) > 0;
     real d = facet_density(drawn, facet.h), chance = facet_chance(drawn, up, facet.h);
     real masking = facet_masking(m, up) / chance * facet_masking(m, wo) * fabs(wo.z);
-    if (OPAL_HAS_all_facets) masking = masking * (facet_density(m, facet.h) / d);
+    if (OPAL_HAS_all_facets) {
+        masking = masking * (facet_density(m, facet.h) / d);
+        kept = kept & (d > 0); // which underflows where Beckmann's facets are rare
+    }
     real weight = (reflects ? facet.fresnel : 1 - facet.fresnel) / reflection.probability * masking;
     real part = reflects ? R(0.25) : facet.crossing * square(boundary.eta);
     v3 colored = glass_weight(reflects, weight, b.specular_reflectance, b.specular_transmittance);

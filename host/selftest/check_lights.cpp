@@ -45,8 +45,10 @@ double radiance_at(const Planes &drawn, size_t i) {
 }
 
 // Whether sample i could be one of a delta light: a unit direction, light that is finite and not negative, density 1.
+// That is 1 over the number of lights, which fast math rounds (check_basics.cpp: "error of reciprocal").
 bool is_delta_sample(const Planes &drawn, size_t i) {
-    bool good = std::abs(length(drawn.vec3(LIGHT_D_X, i)) - 1) < 1e-5 && drawn.at(LIGHT_DENSITY, i) == 1;
+    bool good = std::abs(length(drawn.vec3(LIGHT_D_X, i)) - 1) < 1e-5 &&
+                std::abs(drawn.at(LIGHT_DENSITY, i) - 1) <= 2.5f * 0x1p-24f;
     for (size_t channel = 0; channel < 3; channel++) {
         const double value = drawn.at(LIGHT_RADIANCE_R + channel, i);
         good = good && value >= 0 && std::isfinite(value);

@@ -27,6 +27,19 @@ constexpr double least_share = 1e-6;
 
 double angle_between(Vec3 a, Vec3 b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
 
+// Have all corners of each position the same uv, as where the file is a list of vertices?
+bool has_one_uv_a_position(const TriangleMesh &mesh) {
+    std::vector<unsigned> uvs(mesh.positions.size(), OPAL_NONE);
+    for (size_t t = 0; t < mesh.triangles.size(); ++t)
+        for (unsigned i = 0; i < 3; ++i) {
+            unsigned &uv = uvs[mesh.triangles[t][i].position];
+            if (uv != OPAL_NONE && uv != mesh.uv_corners[t][i])
+                return false;
+            uv = mesh.uv_corners[t][i];
+        }
+    return true;
+}
+
 // For each corner the number of its vertex, where corners of one position are different vertices if their uv are.
 LargeVector<std::array<unsigned, 3>> split_by_uv(const TriangleMesh &mesh, size_t &vertex_count) {
     struct Use {
@@ -53,7 +66,7 @@ LargeVector<std::array<unsigned, 3>> split_by_uv(const TriangleMesh &mesh, size_
 void add_smooth_normals(TriangleMesh &mesh) {
     size_t vertex_count = mesh.positions.size();
     LargeVector<std::array<unsigned, 3>> split;
-    if (!mesh.uv_corners.empty())
+    if (!mesh.uv_corners.empty() && !has_one_uv_a_position(mesh))
         split = split_by_uv(mesh, vertex_count);
     const auto vertex_of = [&](size_t t, unsigned i) {
         return split.empty() ? mesh.triangles[t][i].position : split[t][i];
