@@ -72,9 +72,9 @@ Bsdf drawn_material(const Kind &kind, std::mt19937 &random) {
 // of each other.
 double greatest_albedo(const std::string &kind) {
     const std::pair<const char *, double> known[] = {{"principled", 1.8},
-                                                     {"principledthin", 2},
+                                                     {"principledthin", 2.1},
                                                      {"plastic", 1.03},
-                                                     {"roughplastic", 1.06},
+                                                     {"roughplastic", 1.08},
                                                      {"roughdielectric", 1.0018}};
     for (const auto &[name, albedo] : known)
         if (kind == name)
