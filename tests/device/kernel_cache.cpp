@@ -59,7 +59,7 @@ mode_t mode_of(const fs::path &path) {
 
 } // namespace
 
-TEST_CASE("A damaged file of the cache is thrown away, and its kernels are compiled anew", "[kernel_cache]") {
+TEST_CASE("A damaged file of the cache is thrown away, and its kernels are compiled anew", "[kernel_cache][alone]") {
     if (!keeps_kernels())
         return;
     const Place place;
@@ -117,7 +117,7 @@ TEST_CASE("A damaged file of the cache is thrown away, and its kernels are compi
     CHECK(count_of(place.temporary) == 0);
 }
 
-TEST_CASE("Drivers compile in an empty folder of mode 700, whatever PATH says", "[kernel_cache]") {
+TEST_CASE("Drivers compile in an empty folder of mode 700, whatever PATH says", "[kernel_cache][alone]") {
     if (!keeps_kernels())
         return;
     const Place place;
@@ -141,7 +141,7 @@ TEST_CASE("Drivers compile in an empty folder of mode 700, whatever PATH says", 
     CHECK(count_of(place.work) == 1);
 }
 
-TEST_CASE("Without a home, kernels are compiled in a private temporary folder", "[kernel_cache]") {
+TEST_CASE("Without a home, kernels are compiled in a private temporary folder", "[kernel_cache][alone]") {
     const Place place;
     for (const std::string variables : {"-i", "-i HOME=/nonexistent", "-i HOME=/dev/null XDG_CACHE_HOME=relative"}) {
         CAPTURE(variables);
@@ -155,7 +155,7 @@ TEST_CASE("Without a home, kernels are compiled in a private temporary folder", 
     }
 }
 
-TEST_CASE("A cache folder that others may write to, or that is a link, is not used", "[kernel_cache]") {
+TEST_CASE("A cache folder that others may write to, or that is a link, is not used", "[kernel_cache][alone]") {
     const Place place;
     fs::create_directory(place.cache);
     fs::permissions(place.cache, fs::perms::all);
@@ -168,7 +168,7 @@ TEST_CASE("A cache folder that others may write to, or that is a link, is not us
     CHECK(count_of(place.folder / "elsewhere") == 0);
 }
 
-TEST_CASE("The cache is trimmed to the files that were used last, told and emptied", "[kernel_cache]") {
+TEST_CASE("The cache is trimmed to the files that were used last, told and emptied", "[kernel_cache][alone]") {
     const Place place;
     fs::create_directory(place.cache);
     const auto now = fs::file_time_type::clock::now();
@@ -203,7 +203,7 @@ TEST_CASE("The cache is trimmed to the files that were used last, told and empti
     CHECK(fs::exists(other));
 }
 
-TEST_CASE("What is missing to build kernels is named", "[kernel_cache]") {
+TEST_CASE("What is missing to build kernels is named", "[kernel_cache][alone]") {
     if (!keeps_kernels())
         return;
     const Place place;
@@ -220,7 +220,8 @@ TEST_CASE("What is missing to build kernels is named", "[kernel_cache]") {
     CHECK_THAT(kept.err, Catch::StartsWith("warning: ") && Catch::Contains("PoCL needs the program ld"));
 }
 
-TEST_CASE("The working directory is the user's again after a driver was used, also a removed one", "[kernel_cache]") {
+TEST_CASE("The working directory is the user's again after a driver was used, also a removed one",
+          "[kernel_cache][alone]") {
     const fs::path before = fs::current_path();
     {
         const DriverScope outer, inner;

@@ -5,7 +5,7 @@
 
 using namespace opal::test;
 
-TEST_CASE("An error or a signal at a call on a file leaves the old file or the new one", "[some_calls]") {
+TEST_CASE("An error or a signal at a call on a file leaves the old file or the new one", "[some_calls][alone]") {
     const bool over_old_files = GENERATE(false, true);
     const FaultyRender render(over_old_files);
     size_t turn = over_old_files ? 3 : 0; // each call meets one fault, and another one over old files

@@ -51,7 +51,8 @@ void load_in_time(const ScratchFolder &folder, const std::string &text, size_t o
 
 } // namespace
 
-TEST_CASE("XML of a hundred thousand objects, properties, attributes or names takes linear time", "[linear_readers]") {
+TEST_CASE("XML of a hundred thousand objects, properties, attributes or names takes linear time",
+          "[linear_readers][alone]") {
     const ScratchFolder folder;
     SECTION("meshes") {
         load_in_time(folder, scene_of(repeated([](int i) { return parallelogram(i, ""); })), many);
@@ -95,7 +96,8 @@ TEST_CASE("XML of a hundred thousand objects, properties, attributes or names ta
     }
 }
 
-TEST_CASE("OBJ and MTL of a hundred thousand materials, libraries or names take linear time", "[linear_readers]") {
+TEST_CASE("OBJ and MTL of a hundred thousand materials, libraries or names take linear time",
+          "[linear_readers][alone]") {
     const ScratchFolder folder;
     const std::string scene = scene_of("<mesh type='obj'><string name='filename' value='a.obj'/>"
                                        "<boolean name='materials' value='true'/></mesh>");
@@ -119,13 +121,13 @@ TEST_CASE("OBJ and MTL of a hundred thousand materials, libraries or names take 
     load_in_time(folder, scene, meshes);
 }
 
-TEST_CASE("A message of many quoted words without an end takes linear time", "[linear_readers]") {
+TEST_CASE("A message of many quoted words without an end takes linear time", "[linear_readers][alone]") {
     const std::clock_t start = std::clock();
     CHECK(shortened_message(repeated([](int) { return "'a "; })).size() < 3000);
     CHECK(double(std::clock() - start) / CLOCKS_PER_SEC < 5); // a quadratic reader takes a minute
 }
 
-TEST_CASE("A million warnings are told as a thousand", "[linear_readers]") {
+TEST_CASE("A million warnings are told as a thousand", "[linear_readers][alone]") {
     forget_warnings();
     for (int i = 0; i < 5000; i++)
         warn(fmt::format("the warning {}", i));
@@ -134,7 +136,8 @@ TEST_CASE("A million warnings are told as a thousand", "[linear_readers]") {
     forget_warnings();
 }
 
-TEST_CASE("PLY of a hundred thousand properties, elements, names or corners takes linear time", "[linear_readers]") {
+TEST_CASE("PLY of a hundred thousand properties, elements, names or corners takes linear time",
+          "[linear_readers][alone]") {
     const ScratchFolder folder;
     const std::string start = "ply\nformat ascii 1.0\n", vertex = "element vertex 3\n",
                       xyz = "property float x\nproperty float y\nproperty float z\n",

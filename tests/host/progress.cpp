@@ -13,7 +13,7 @@
 
 using namespace opal;
 
-TEST_CASE("Durations and counts are told in the unit that suits them", "[progress]") {
+TEST_CASE("Durations and counts are told in the unit that suits them", "[progress][alone]") {
     CHECK(duration_text(0.84) == "0.8 s");
     CHECK(duration_text(59.4) == "59 s");
     CHECK(duration_text(200) == "3 min 20 s");
@@ -23,7 +23,7 @@ TEST_CASE("Durations and counts are told in the unit that suits them", "[progres
     CHECK(count_text(3.21e6) == "3.21 M");
 }
 
-TEST_CASE("A progress line tells share, speed and time left", "[progress]") {
+TEST_CASE("A progress line tells share, speed and time left", "[progress][alone]") {
     CHECK(progress_line("render", "samples", 45e6, 100e6, 10, false) == "render  45 %  4.5 M samples/s  12 s left");
     CHECK(progress_line("render", "samples", 5, 10, 1, true) ==
           "render  50 % [###############               ]  5 samples/s  1.0 s left");
@@ -53,7 +53,7 @@ void sleep(double seconds) { std::this_thread::sleep_for(std::chrono::duration<d
 
 } // namespace
 
-TEST_CASE("Running seconds are told from the first second on, and not before", "[progress]") {
+TEST_CASE("Running seconds are told from the first second on, and not before", "[progress][alone]") {
     const auto told_in = [](double seconds) {
         return told_by([&] {
             const RunningProgress running("compile");
@@ -64,7 +64,7 @@ TEST_CASE("Running seconds are told from the first second on, and not before", "
     CHECK(told_in(1.3) == "compile 1 s\n");
 }
 
-TEST_CASE("The time left is told where it is known, until it has passed", "[progress]") {
+TEST_CASE("The time left is told where it is known, until it has passed", "[progress][alone]") {
     CHECK(running_line("sweep", 6, 2.0, true) == "sweep    75 % [######################        ]  2.0 s left");
     CHECK(running_line("verify", 90, 0.0, false) == "verify  100 %  0.0 s left");
     CHECK(running_line("selftest", 3, {}, true) == "selftest 3 s");
@@ -91,7 +91,7 @@ TEST_CASE("The time left is told where it is known, until it has passed", "[prog
                Catch::Matches("test     1\\d %  [67]\\.\\d s left\n"));
 }
 
-TEST_CASE("The step that lasts is told at the end of the line", "[progress]") {
+TEST_CASE("The step that lasts is told at the end of the line", "[progress][alone]") {
     CHECK(told_by([] {
               RunningProgress running("pilots");
               running.tell("compile MIS, power heuristic");
@@ -99,14 +99,14 @@ TEST_CASE("The step that lasts is told at the end of the line", "[progress]") {
           }) == "pilots  1 s  compile MIS, power heuristic\n");
 }
 
-TEST_CASE("A compilation within a longer task is told by the task's line", "[progress]") {
+TEST_CASE("A compilation within a longer task is told by the task's line", "[progress][alone]") {
     CHECK(told_by([] {
               const RunningProgress whole("sweep"), part("compile");
               sleep(1.3);
           }) == "sweep   1 s\n");
 }
 
-TEST_CASE("A message takes the place of a bar that stands on its line", "[progress]") {
+TEST_CASE("A message takes the place of a bar that stands on its line", "[progress][alone]") {
     CHECK(told_by([] {
               show("render  50 %");
               info("result");
@@ -114,7 +114,7 @@ TEST_CASE("A message takes the place of a bar that stands on its line", "[progre
           }) == "render  50 %\r\033[Kresult\nwrote\n");
 }
 
-TEST_CASE("The first interrupt sets the flag, one half a second later ends the process", "[progress]") {
+TEST_CASE("The first interrupt sets the flag, one half a second later ends the process", "[progress][alone]") {
     const pid_t child = fork();
     REQUIRE(child >= 0);
     if (child == 0) {

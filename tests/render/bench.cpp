@@ -121,7 +121,7 @@ const std::string scenes = OPAL_SOURCE_DIR "/scenes/";
 
 } // namespace
 
-TEST_CASE("Dumped hits are those of the dumped rays and triangles, listed and in the tree", "[bench]") {
+TEST_CASE("Dumped hits are those of the dumped rays and triangles, listed and in the tree", "[bench][alone]") {
     for (const std::string &scene : {scenes + "cbox_mis.xml", scenes + "mesh_light.xml"})
         for (const std::string kind : {"camera", "bounce", "shadow"}) {
             Dump dump = dump_of(scene, kind);
@@ -134,7 +134,7 @@ TEST_CASE("Dumped hits are those of the dumped rays and triangles, listed and in
         }
 }
 
-TEST_CASE("Widths answer the same rays alike", "[bench]") {
+TEST_CASE("Widths answer the same rays alike", "[bench][alone]") {
     const Dump one = dump_of(scenes + "mesh_light.xml", "bounce", " --lanes 1"),
                eight = dump_of(scenes + "mesh_light.xml", "bounce", " --lanes 8");
     CHECK(wrong_hits(one, false) == 0);
@@ -145,7 +145,7 @@ TEST_CASE("Widths answer the same rays alike", "[bench]") {
     CHECK(different < one.hits.size() / 1000);
 }
 
-TEST_CASE("Camera rays leave one point, bounces have no end, shadow rays end at the light", "[bench]") {
+TEST_CASE("Camera rays leave one point, bounces have no end, shadow rays end at the light", "[bench][alone]") {
     const Dump camera = dump_of(scenes + "cbox_mis.xml", "camera"), bounce = dump_of(scenes + "cbox_mis.xml", "bounce"),
                shadow = dump_of(scenes + "cbox_mis.xml", "shadow");
     for (const Ray &ray : camera.rays)
@@ -159,7 +159,7 @@ TEST_CASE("Camera rays leave one point, bounces have no end, shadow rays end at 
     CHECK(met > 0.5);
 }
 
-TEST_CASE("Figures of all kinds, and of one", "[bench]") {
+TEST_CASE("Figures of all kinds, and of one", "[bench][alone]") {
     const ScratchFolder folder;
     const std::string file = (folder / "stats.json").string();
     const Outcome outcome = bench("rays " + scenes + "mesh_light.xml --rays 4000 --runs 3 --json " + file);
@@ -184,7 +184,7 @@ TEST_CASE("Figures of all kinds, and of one", "[bench]") {
     CHECK((one["kind"] == "shadow" && one["mrays_per_second"] > 0.0 && one["node_tests_per_ray"] == 0.0));
 }
 
-TEST_CASE("Degenerate triangles are in no dump; without a light shadow rays go anywhere", "[bench]") {
+TEST_CASE("Degenerate triangles are in no dump; without a light shadow rays go anywhere", "[bench][alone]") {
     const ScratchFolder folder;
     folder.write("two.obj", "v -1 -1 5\nv 1 -1 5\nv 0 1 5\nv 0 0 4\nf 1 2 3\nf 1 2 2\nf 1 4 3\n");
     const std::string scene =
@@ -198,7 +198,7 @@ TEST_CASE("Degenerate triangles are in no dump; without a light shadow rays go a
     CHECK(dump_of(scene, "shadow").rays.size() > 10);
 }
 
-TEST_CASE("What makes no sense is refused, and nothing is written", "[bench]") {
+TEST_CASE("What makes no sense is refused, and nothing is written", "[bench][alone]") {
     const ScratchFolder folder;
     const std::string scene = scenes + "cbox_mis.xml", out = (folder / "out").string();
     for (const auto &[arguments, reason, code] :
@@ -231,7 +231,7 @@ TEST_CASE("What makes no sense is refused, and nothing is written", "[bench]") {
     CHECK_THAT(all.err, Catch::Contains("warning: ") && Catch::Contains("no shadow rays"));
 }
 
-TEST_CASE("a share of the time has a range, or is below what can be told", "[bench]") {
+TEST_CASE("a share of the time has a range, or is below what can be told", "[bench][alone]") {
     // Done twice, sampling took 0.9 to 1.02 times the time: the machine's noise is larger than its share.
     const opal::Race traversal{{}, {1.5, 1.4, 1.7}, 0}, sampling{{}, {0.9048, 0.9, 1.02}, 0};
     const opal::TimeShares shares{share_of(traversal), share_of(sampling)};
@@ -240,7 +240,7 @@ TEST_CASE("a share of the time has a range, or is below what can be told", "[ben
     CHECK(shares.json()["sampling"]["median"] == 0.0);
 }
 
-TEST_CASE("bench render times the kernel and its variants", "[bench]") {
+TEST_CASE("bench render times the kernel and its variants", "[bench][alone]") {
     const ScratchFolder folder;
     const std::string file = (folder / "json").string();
     const Outcome outcome = bench("render " + scenes + "cbox_mis.xml --seconds 0.01 --rounds 2 --json " + file);
@@ -262,7 +262,7 @@ TEST_CASE("bench render times the kernel and its variants", "[bench]") {
     CHECK(stats["general"]["time"]["median"] > 1.0);
 }
 
-TEST_CASE("bench_growth measures each size, and names and leaves out the peers that are missing", "[bench]") {
+TEST_CASE("bench_growth measures each size, and names and leaves out the peers that are missing", "[bench][alone]") {
     const ScratchFolder folder;
     const std::string script = "CXX=false " OPAL_SOURCE_DIR "/scripts/bench_growth --opal " OPAL_BINARY;
     const std::string json = (folder / "growth.json").string();

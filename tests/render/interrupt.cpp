@@ -47,7 +47,8 @@ Outcome interrupted_after(double seconds, const ScratchFolder &folder, const std
 
 } // namespace
 
-TEST_CASE("An interrupted first pass tells of the pixels without a sample, and claims nothing of them", "[interrupt]") {
+TEST_CASE("An interrupted first pass tells of the pixels without a sample, and claims nothing of them",
+          "[interrupt][alone]") {
     if (device().info.type == "gpu") {
         WARN("not tested: one launch holds the whole image here");
         return;
@@ -79,7 +80,7 @@ TEST_CASE("An interrupted first pass tells of the pixels without a sample, and c
     }
 }
 
-TEST_CASE("An interrupted render leaves an image of the samples it finished", "[interrupt]") {
+TEST_CASE("An interrupted render leaves an image of the samples it finished", "[interrupt][alone]") {
     const auto [signal, code] = GENERATE(std::pair("INT", 130), std::pair("TERM", 143), std::pair("HUP", 129));
     const ScratchFolder folder;
     const std::string exr = folder / "out.exr", said = folder / "said.txt";
@@ -113,7 +114,7 @@ TEST_CASE("An interrupted render leaves an image of the samples it finished", "[
     CHECK(mean == Approx(0.5).epsilon(0.05));
 }
 
-TEST_CASE("Under nohup a closed terminal stops nothing", "[interrupt]") {
+TEST_CASE("Under nohup a closed terminal stops nothing", "[interrupt][alone]") {
     const ScratchFolder folder;
     const std::string exr = folder / "out.exr", said = folder / "said.txt";
     // Without `timeout`, which would take the signal's ignoring from Opal.

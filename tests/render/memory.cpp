@@ -28,7 +28,7 @@ std::string field(int side) {
 
 } // namespace
 
-TEST_CASE("A render of a million triangles takes at most 110 bytes for each", "[memory]") {
+TEST_CASE("A render of a million triangles takes at most 110 bytes for each", "[memory][alone]") {
     const ScratchFolder folder;
     // The peak of a render of the field, in bytes. The first render compiles.
     const auto peak = [&](int side) {
@@ -54,7 +54,7 @@ TEST_CASE("A render of a million triangles takes at most 110 bytes for each", "[
     CHECK(bytes > 60); // the tree alone: else this measures nothing
 }
 
-TEST_CASE("A render of 1920 x 1080 pixels takes at most 124 bytes for each, whatever its filter", "[memory]") {
+TEST_CASE("A render of 1920 x 1080 pixels takes at most 124 bytes for each, whatever its filter", "[memory][alone]") {
     const ScratchFolder folder;
     const std::string box = OPAL_SOURCE_DIR "/scenes/cbox_mis.xml";
     std::string gaussian = read_text(box);
@@ -76,7 +76,7 @@ TEST_CASE("A render of 1920 x 1080 pixels takes at most 124 bytes for each, what
     }
 }
 
-TEST_CASE("What does not fit into memory is told before it is begun", "[memory]") {
+TEST_CASE("What does not fit into memory is told before it is begun", "[memory][alone]") {
     const ScratchFolder folder;
     const std::string exr = folder / "large.exr", box = OPAL_SOURCE_DIR "/scenes/cbox_mis.xml";
     const std::string opal = " '" OPAL_BINARY "' ";

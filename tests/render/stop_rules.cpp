@@ -46,7 +46,7 @@ struct Rendering {
 
 } // namespace
 
-TEST_CASE("The interval of --target-error covers the true mean as often as it says", "[stop_rules][stat]") {
+TEST_CASE("The interval of --target-error covers the true mean as often as it says", "[stop_rules][alone][stat]") {
     Rendering r;
     const FilmStatistics truth = r.until({}, test_seed(1), 1 << 17);
     constexpr double target = 0.05;
@@ -68,7 +68,7 @@ TEST_CASE("The interval of --target-error covers the true mean as often as it sa
     CHECK(met >= 60);                                                                // the margin of the pilot
 }
 
-TEST_CASE("--target-error takes at most the samples that are allowed, and says so", "[stop_rules]") {
+TEST_CASE("--target-error takes at most the samples that are allowed, and says so", "[stop_rules][alone]") {
     Rendering r;
     StopResult stopped;
     const FilmStatistics s = r.until({.relative_error = 1e-6}, test_seed(3), 32, &stopped);
@@ -77,7 +77,7 @@ TEST_CASE("--target-error takes at most the samples that are allowed, and says s
     CHECK(s.stderr_luminance > 1e-6 * s.mean_luminance);
 }
 
-TEST_CASE("--time ends after that much kernel time, and stops no render that ends before", "[stop_rules]") {
+TEST_CASE("--time ends after that much kernel time, and stops no render that ends before", "[stop_rules][alone]") {
     Rendering r;
     CHECK(r.until({.seconds = 1000}, test_seed(4), 16).samples == 64 * 16);
     StopResult stopped;
@@ -88,7 +88,8 @@ TEST_CASE("--time ends after that much kernel time, and stops no render that end
     CHECK(r.renderer.kernel_seconds() < 3); // a launch is about 0.1 s
 }
 
-TEST_CASE("--time-limit counts from the start of the process, and stops no render that ends before", "[stop_rules]") {
+TEST_CASE("--time-limit counts from the start of the process, and stops no render that ends before",
+          "[stop_rules][alone]") {
     Rendering r;
     CHECK(r.until({.wall_seconds = seconds_since_start() + 1000}, test_seed(4), 16).samples == 64 * 16);
     StopResult stopped;
@@ -100,7 +101,7 @@ TEST_CASE("--time-limit counts from the start of the process, and stops no rende
     CHECK(seconds_since_start() < start + 5);
 }
 
-TEST_CASE("A render that its rule ends speaks of no error", "[stop_rules]") {
+TEST_CASE("A render that its rule ends speaks of no error", "[stop_rules][alone]") {
     const ScratchFolder folder;
     for (const std::string rule : {"--time 0.1s", "--time-limit 1s", "--target-error 5%"}) {
         INFO(rule);
@@ -118,7 +119,7 @@ TEST_CASE("A render that its rule ends speaks of no error", "[stop_rules]") {
 }
 
 // Of many launches a pass, of which --time lets one end.
-TEST_CASE("--time too short for a sample a pixel says so, and states no interval", "[stop_rules]") {
+TEST_CASE("--time too short for a sample a pixel says so, and states no interval", "[stop_rules][alone]") {
     const ScratchFolder folder;
     const std::string scene = OPAL_SOURCE_DIR "/scenes/furnace.xml", exr = folder / "part.exr",
                       json = folder / "part.json";
@@ -153,7 +154,7 @@ TEST_CASE("--time too short for a sample a pixel says so, and states no interval
     CHECK_THAT(swept.err, Catch::Contains(fmt::format("{} of its pixels have no sample", empty)));
 }
 
-TEST_CASE("Durations and errors are read with their units", "[stop_rules]") {
+TEST_CASE("Durations and errors are read with their units", "[stop_rules][alone]") {
     CHECK(parse_seconds("30s") == 30);
     CHECK(parse_seconds("500ms") == Approx(0.5));
     CHECK(parse_seconds("2min") == 120);
