@@ -7,9 +7,9 @@
 #include "support/rooms.h"
 #include "support/scratch.h"
 
-#include <algorithm>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace opal::test {
