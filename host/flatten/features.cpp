@@ -75,7 +75,11 @@ public:
         });
     }
 
-    Decision beckmann() const { return with_flag("ggx", 0); }
+    // A microfacet's coat is Beckmann's without asking, unless some surface of the scene is GGX.
+    Decision beckmann() const {
+        const bool asks = ggx().on;
+        return bsdfs([&](uint at) { return (asks || scene.bsdfs[at] != BSDF_microfacet) && has_flag(at, "ggx", 0); });
+    }
     Decision ggx() const { return with_flag("ggx", 1); }
     Decision all_facets() const { return with_flag("sample_visible", 0); }
 
@@ -97,12 +101,15 @@ public:
     // The words of the table from a record on.
     std::span<const uint> bsdf_words(uint at) const { return std::span(scene.bsdfs).subspan(at); }
 
+    // Is the flag of that record there, and that value?
+    bool has_flag(uint at, const char *name, uint value) const {
+        const Parameter *parameter = bsdf_parameter(scene.bsdfs[at], name);
+        return parameter && scene.bsdfs[at + parameter->word] == value;
+    }
+
     // Meshes with a BSDF of facets whose flag is that.
     Decision with_flag(const char *name, uint value) const {
-        return bsdfs([&](uint at) {
-            const Parameter *parameter = bsdf_parameter(scene.bsdfs[at], name);
-            return parameter && scene.bsdfs[at + parameter->word] == value;
-        });
+        return bsdfs([&](uint at) { return has_flag(at, name, value); });
     }
 
     // Meshes that have such a BSDF; is_meant: of a record, by its first word.
