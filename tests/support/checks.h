@@ -51,7 +51,7 @@ Findings check_filters(const Sources &sources, unsigned seed);
 
 // The film's sums against double on the host, for samples of very different size.
 Findings check_film(const Sources &sources, unsigned seed);
-// The end of a film of 2^28 pixels; nothing where the device has no buffer for its samples.
+// The end of a film of 2^28 pixels, or of as many rows of it as a buffer of the device has room for.
 Findings check_largest_film();
 // Passes cut differently: the same bits.
 Findings check_crops(const Sources &sources, unsigned seed); // hold the bits of the whole image

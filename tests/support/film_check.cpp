@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -117,17 +118,22 @@ Findings check_film(const Sources &sources, unsigned seed) {
 }
 
 Findings check_largest_film() {
-    constexpr unsigned side = 1u << 14, last = 4, value = 3, spp = 1; // `last` pixels at the end are a band
+    constexpr unsigned width = 1u << 14, last = 4, value = 3, spp = 1; // `last` pixels at the end are a band
+    constexpr unsigned tile = 8;
+    constexpr unsigned long long sample_bytes = 4 * OPAL_SAMPLE_FLOATS;
+    // On a device without a buffer for the samples of 2^28 pixels the image has as many rows of tiles as there is room.
+    const unsigned long long rows_of_tiles = device().info.max_allocation / (sample_bytes * width * tile);
+    const unsigned height = tile * unsigned(std::min<unsigned long long>(width / tile, rows_of_tiles));
+    if (height < width)
+        WARN("the largest image is not tested: a buffer of the device has room for " << height << " of " << width
+                                                                                     << " rows");
     Settings settings{};
-    settings.width = settings.height = side;
-    settings.film = {0, 0, side, side};
+    settings.width = width;
+    settings.height = height;
+    settings.film = {0, 0, width, height};
     settings.filter = FILTER_tent;
     settings.filter_radius = 1;
-    const unsigned long long all = 1ull * side * side, sample_bytes = 4 * OPAL_SAMPLE_FLOATS;
-    if (sample_bytes * all > device().info.max_allocation) {
-        WARN("the device has no buffer of " << sample_bytes * all << " bytes for the samples of the largest image");
-        return {};
-    }
+    const unsigned long long all = 1ull * width * height;
     Findings findings;
     for (int lanes : tested_lanes()) {
         const std::string where = std::to_string(lanes) + " lanes: ";
@@ -138,8 +144,8 @@ Findings check_largest_film() {
             cl::Buffer buffer;
         } const samples{make_buffer(device(), CL_MEM_READ_WRITE, sample_bytes * all, nullptr, "a test's samples")};
         // Two rows of one value: what the filter reaches.
-        const std::vector<float> rows(size_t(OPAL_SAMPLE_FLOATS) * 2 * side, float(value));
-        const unsigned long long place = sample_bytes * (all - 2 * side);
+        const std::vector<float> rows(size_t(OPAL_SAMPLE_FLOATS) * 2 * width, float(value));
+        const unsigned long long place = sample_bytes * (all - 2 * width);
         with_device(device().info, [&] {
             return device().handles->queue.enqueueWriteBuffer(samples.buffer, CL_TRUE, place, 4 * rows.size(),
                                                               rows.data());
@@ -157,7 +163,7 @@ Findings check_largest_film() {
         }
         findings.push_back(exact(where + "counts", counts.read() == std::vector<cl_uint>(last, 1)));
         // The last tile of 8 x 8 pixels becomes empty, and the pixel before its last row does not.
-        constexpr unsigned tile = 8, tiles = side / tile * (side / tile);
+        const unsigned tiles = width / tile * (height / tile);
         run(program, "clear", 1, table, samples, tiles - 1, tiles, tile, tile, 1u, spp, 0u, spp);
         std::vector<cl_uint> words(OPAL_SAMPLE_FLOATS * (tile + 1));
         with_device(device().info, [&] {
