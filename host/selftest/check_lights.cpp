@@ -45,10 +45,9 @@ double radiance_at(const Planes &drawn, size_t i) {
 }
 
 // Whether sample i could be one of a delta light: a unit direction, light that is finite and not negative, density 1.
-// That is 1 over the number of lights, which fast math rounds (check_basics.cpp: "error of reciprocal").
-bool is_delta_sample(const Planes &drawn, size_t i) {
+bool is_delta_sample(const Planes &drawn, size_t i, double density_error) {
     bool good = std::abs(length(drawn.vec3(LIGHT_D_X, i)) - 1) < 1e-5 &&
-                std::abs(drawn.at(LIGHT_DENSITY, i) - 1) <= 2.5f * 0x1p-24f;
+                std::abs(double(drawn.at(LIGHT_DENSITY, i)) - 1) <= density_error;
     for (size_t channel = 0; channel < 3; channel++) {
         const double value = drawn.at(LIGHT_RADIANCE_R + channel, i);
         good = good && value >= 0 && std::isfinite(value);
@@ -60,11 +59,12 @@ bool is_near(double a, double b) { return std::abs(a - b) <= 1e-4 * std::abs(b);
 
 // A light that is infinitely far: one direction and irradiance everywhere. Power over pi (the bounding circle of radius
 // 1).
-Findings distant_findings(KernelProbe &probe, const Light &light, const Planes &numbers, const std::string &subject) {
+Findings distant_findings(KernelProbe &probe, const Light &light, const Planes &numbers, const std::string &subject,
+                          double density_error) {
     const Planes drawn = probe.light_sample(even_directions(), numbers);
     double wrong = 0;
     for (size_t i = 0; i < drawn.count; i++)
-        wrong += !is_delta_sample(drawn, i) || !is_near(radiance_at(drawn, i), radiance_at(drawn, 0)) ||
+        wrong += !is_delta_sample(drawn, i, density_error) || !is_near(radiance_at(drawn, i), radiance_at(drawn, 0)) ||
                  length(drawn.vec3(LIGHT_D_X, i) - drawn.vec3(LIGHT_D_X, 0)) > 1e-5;
     return {
         none_wrong("lights: samples of delta lights, wrong", wrong, subject),
@@ -88,8 +88,8 @@ Cap lit_part(const Cap &cap, const std::vector<Vec3> &from, const Planes &drawn)
 
 // A light at a point: all directions lead there, the irradiance falls by the distance's square, and the intensity over
 // all directions is the power.
-Findings point_like_findings(KernelProbe &probe, const Light &light, const Planes &numbers,
-                             const std::string &subject) {
+Findings point_like_findings(KernelProbe &probe, const Light &light, const Planes &numbers, const std::string &subject,
+                             double density_error) {
     // Alone in its scene it lies at the origin. Seen from there, d / 2 and d are one direction bit for bit, so that
     // light which falls steeply with the angle is the same, too.
     const Vec3 position{};
@@ -102,8 +102,8 @@ Findings point_like_findings(KernelProbe &probe, const Light &light, const Plane
     double wrong = 0;
     for (size_t i = 0; i < directions; i++) {
         const Vec3 met = near[i] + from_near.vec3(LIGHT_D_X, i) * from_near.at(LIGHT_DISTANCE, i);
-        wrong += !is_delta_sample(from_near, i) || !is_delta_sample(from_far, i) || length(met - position) > 1e-5 ||
-                 !is_near(radiance_at(from_near, i) / 4, radiance_at(from_far, i));
+        wrong += !is_delta_sample(from_near, i, density_error) || !is_delta_sample(from_far, i, density_error) ||
+                 length(met - position) > 1e-5 || !is_near(radiance_at(from_near, i) / 4, radiance_at(from_far, i));
     }
     Cap cap;
     double power = 0;
@@ -147,8 +147,8 @@ Findings scene_emitter_findings(KernelProbe &probe, const Light &light, const st
     which.seed = effort.seed;
     const Planes numbers = probe.numbers(directions, which);
     if (!can_be_met(light.kind()))
-        return is_infinite(light.kind()) ? distant_findings(probe, light, numbers, subject)
-                                         : point_like_findings(probe, light, numbers, subject);
+        return is_infinite(light.kind()) ? distant_findings(probe, light, numbers, subject, effort.density_error)
+                                         : point_like_findings(probe, light, numbers, subject, effort.density_error);
     Findings findings = light_findings(probe, sampled_lights(probe), subject, effort);
     findings.push_back(environment_power(probe, light, numbers, subject));
     return findings;

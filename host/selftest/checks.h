@@ -15,6 +15,7 @@ struct Effort {
     std::vector<double> angles = {0, 50, 89.9}; // of incidence, degrees
     double quadrature_error = 1e-2;             // relative, of a light's density in a cell
     unsigned seed = 0;
+    double density_error = 0; // of a delta light's density, which is 1
     bool each_sample = false; // besides the mean over all samples, judge the weight and the density of each
 };
 
