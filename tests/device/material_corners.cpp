@@ -1,5 +1,6 @@
 // Materials whose parameters are at the ends of their ranges: what many samples of them are.
 #include "probe/kernel_probe.h"
+#include "scene/index_of_refraction.h"
 #include "scene/parameters.h"
 #include "scene/scene.h"
 #include "support/device.h"
@@ -56,11 +57,10 @@ Bsdf drawn_material(const Kind &kind, std::mt19937 &random) {
         if (is_property(parameter.type))
             for (size_t channel = 0; channel < (parameter.type == ParameterType::COLOR ? 3 : 1); channel++)
                 set(parameter, channel, draw(parameter));
-    // As readers have it: an index of 1 is 1.001 where something is transmitted.
     const Parameter *const index = bsdf_parameter(bsdf.kind(), "eta"), *const share =
                                                                            bsdf_parameter(bsdf.kind(), "spec_trans");
-    if (index && share && std::bit_cast<float>(bsdf.words[index->word]) == 1)
-        set(*index, 0, 1.001);
+    if (index && share) // as readers have it
+        set(*index, 0, principled_index(std::bit_cast<float>(bsdf.words[index->word]), {}, true));
     const Parameter *const inside = bsdf_parameter(bsdf.kind(), "int_ior"), *const outside =
                                                                                 bsdf_parameter(bsdf.kind(), "ext_ior");
     while (inside && outside && bsdf.words[inside->word] == bsdf.words[outside->word])

@@ -1,5 +1,5 @@
 // What is drawn against its density; BSDFs, emitters and the functions below them against formulas in double.
-#include "base/error.h"
+#include "base/table.h"
 #include "extremes/scenes.h"
 #include "selftest/checks.h"
 #include "support/cases.h"
@@ -58,12 +58,8 @@ stats::Sample albedo_of(KernelProbe &probe, unsigned id, Vec3 wi, unsigned seed)
 // Those of the cases with these names.
 template <class Case> std::vector<Case> named(const std::vector<Case> &cases, const std::vector<std::string> &names) {
     std::vector<Case> found;
-    for (const std::string &name : names) {
-        const auto place = std::find_if(cases.begin(), cases.end(), [&](const Case &c) { return c.name == name; });
-        if (place == cases.end())
-            throw Error("tests/cases has no case " + name);
-        found.push_back(*place);
-    }
+    for (const std::string &name : names)
+        found.push_back(find_row(cases, "case of tests/cases", name));
     return found;
 }
 
