@@ -1,5 +1,7 @@
 #include "flatten/plastic_boundary.h"
 
+#include "scene/fresnel.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,21 +12,6 @@ namespace opal {
 namespace {
 
 double square(double x) { return x * x; }
-
-// Fresnel's reflectance at that cosine of incidence, of a boundary to a medium of relative index eta, and the cosine of
-// the refracted direction.
-struct Fresnel {
-    double reflectance = 1, refracted = 0;
-    Fresnel(double cosine, double eta) {
-        const double sine2 = (1 - square(cosine)) / square(eta);
-        if (sine2 >= 1)
-            return;
-        refracted = std::sqrt(1 - sine2);
-        reflectance = (square((cosine - eta * refracted) / (cosine + eta * refracted)) +
-                       square((eta * cosine - refracted) / (eta * cosine + refracted))) /
-                      2;
-    }
-};
 
 // Gauss's rule for an integral over [0, 1].
 struct Rule {

@@ -1,8 +1,7 @@
-// Metals by name, and the materials that rough ones become where they are smooth.
+// Metals by name.
 #pragma once
 
 #include "base/color.h"
-#include "scene/scene.h"
 
 #include <span>
 #include <string>
@@ -17,22 +16,5 @@ std::span<const Metal> metals(); // the 71 that Mitsuba 3 knows, and "none", whi
 
 // The metal of that name, upper and lower case as there; null where there is none.
 const Metal *find_metal(const std::string &name);
-
-// Sets a COLOR of a BSDF, by its name.
-void set_color(Bsdf &bsdf, std::string_view name, const Color &color);
-
-// Whether the indices of refraction of a roughdielectric or roughplastic are one: then no facet refracts, and none can
-// be told from the directions that it refracts; none reflects.
-bool has_equal_indices(const Bsdf &bsdf);
-
-// The smooth material that a rough one is whose roughness is 0: of a roughconductor the conductor, of a roughdielectric
-// the dielectric, of a roughplastic the plastic, of others the same.
-Bsdf without_facets(const Bsdf &bsdf);
-
-// Whether the coat of a smooth plastic is so dense that no light of the base would leave it by Mitsuba's fit
-// (flatten/plastic_boundary.h).
-constexpr double densest_plastic = 3.8; // int_ior over ext_ior
-bool is_too_dense(const Bsdf &bsdf);
-std::string too_dense_text(const std::string &outside); // "must be at most 3.8 times extIOR"
 
 } // namespace opal

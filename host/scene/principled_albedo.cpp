@@ -1,5 +1,7 @@
 #include "scene/principled_albedo.h"
 
+#include "scene/fresnel.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,17 +15,10 @@ double mix(double a, double b, double share) { return a + share * (b - a); }
 double schlick_weight(double cosine) { return std::pow(std::clamp(1 - cosine, 0., 1.), 5); }
 
 // Fresnel's reflectance against an index, and the weight of Schlick's approximation to it.
-struct Fresnel {
-    double exact = 1, weight = 1, refracted = 0; // the last: the refracted direction's cosine
-    Fresnel(double cosine, double eta) {
-        const double sine2 = (1 - square(cosine)) / square(eta);
-        refracted = std::sqrt(std::max(0., 1 - sine2));
-        weight = schlick_weight(eta > 1 ? cosine : refracted);
-        if (sine2 < 1)
-            exact = (square((cosine - eta * refracted) / (cosine + eta * refracted)) +
-                     square((eta * cosine - refracted) / (eta * cosine + refracted))) /
-                    2;
-    }
+struct DisneyFresnel : Fresnel {
+    double weight;
+    DisneyFresnel(double cosine, double eta)
+        : Fresnel(cosine, eta), weight(schlick_weight(eta > 1 ? cosine : refracted)) {}
     double schlick(double at_normal) const { return mix(at_normal, 1, weight); }
 };
 
@@ -84,14 +79,15 @@ private:
         const double cosine = dot(wi, h), eta = of_.eta.value, glass = (1 - of_.metallic.value) * of_.spec_trans.value;
         if (cosine <= 0)
             return 0;
-        const Fresnel fresnel(cosine, eta);
+        const DisneyFresnel fresnel(cosine, eta);
         const Vec3 reflected = h * (2 * cosine) - wi,
                    refracted = h * (cosine / eta - fresnel.refracted) - wi * (1 / eta);
         const double dielectric =
-            mix(fresnel.exact, fresnel.schlick(tint_ * square((eta - 1) / (eta + 1))), of_.spec_tint.value);
+            mix(fresnel.reflectance, fresnel.schlick(tint_ * square((eta - 1) / (eta + 1))), of_.spec_tint.value);
         const double back = eta != 1 ? mix(dielectric, fresnel.schlick(base_), of_.metallic.value) : 0;
         return (reflected.z > 0 ? back * facets_.masking(reflected) : 0) +
-               (refracted.z < 0 ? glass * (1 - fresnel.exact) * std::sqrt(base_) * facets_.masking(refracted) : 0);
+               (refracted.z < 0 ? glass * (1 - fresnel.reflectance) * std::sqrt(base_) * facets_.masking(refracted)
+                                : 0);
     }
 
     double coated(Vec3 wi, double u, double v) const {
@@ -102,8 +98,8 @@ private:
         if (strength == 0 || cosine <= 0 || wo.z <= 0)
             return 0;
         const Facets shadows{0.25, 0.25};
-        return strength * Fresnel(cosine, of_.eta.value).schlick(0.04) * shadows.masking(wi) * shadows.masking(wo) *
-               wo.z * 4 * cosine / h.z;
+        return strength * DisneyFresnel(cosine, of_.eta.value).schlick(0.04) * shadows.masking(wi) *
+               shadows.masking(wo) * wo.z * 4 * cosine / h.z;
     }
 };
 

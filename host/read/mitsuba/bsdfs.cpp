@@ -2,6 +2,7 @@
 #include "base/log.h"
 #include "read/mitsuba/parsers.h"
 #include "read/texture_values.h"
+#include "scene/bsdf_rules.h"
 #include "scene/index_of_refraction.h"
 #include "scene/metals.h"
 

@@ -29,7 +29,7 @@ double angle_between(Vec3 a, Vec3 b) { return std::atan2(length(cross(a, b)), do
 
 // Have all corners of each position the same uv, as where the file is a list of vertices?
 bool has_one_uv_a_position(const TriangleMesh &mesh) {
-    std::vector<unsigned> uvs(mesh.positions.size(), OPAL_NONE);
+    LargeVector<unsigned> uvs(mesh.positions.size(), OPAL_NONE);
     for (size_t t = 0; t < mesh.triangles.size(); ++t)
         for (unsigned i = 0; i < 3; ++i) {
             unsigned &uv = uvs[mesh.triangles[t][i].position];

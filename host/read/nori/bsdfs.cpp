@@ -1,5 +1,6 @@
 // The parser of BSDFs: their parameters are those of cl/bsdfs/NAME.h, by their names in the XML.
 #include "read/nori/parsers.h"
+#include "scene/bsdf_rules.h"
 #include "scene/index_of_refraction.h"
 #include "scene/metals.h"
 
