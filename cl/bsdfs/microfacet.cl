@@ -19,11 +19,7 @@
 static real microfacet_ks(microfacet_bsdf b) { return 1 - v3_largest(b.kd); }
 static real microfacet_coat_chance(microfacet_bsdf b) { return drawn_probability(microfacet_ks(b)); }
 
-// The lanes whose facets are GGX's, and their distribution; directions are drawn of all facets, not of visible ones.
-static mask microfacet_is_ggx(microfacet_bsdf b) {
-    if (!OPAL_HAS_ggx) return NO_LANES;
-    return OPAL_HAS_beckmann ? b.ggx : ALL_LANES;
-}
+// The distribution of GGX's facets. Directions are drawn of all of them, not of visible ones.
 static MicrofacetDistribution microfacet_ggx(microfacet_bsdf b) {
     MicrofacetDistribution m = {b.alpha, b.alpha, ALL_LANES, NO_LANES};
     return m;
@@ -35,7 +31,7 @@ static real microfacet_g1(microfacet_bsdf b, v3 w, v3 h) {
     real c = w.z, s = b.alpha * sqrt(sin2_theta(w));
     real rational = c * (R(3.535) * s + R(2.181) * c) / (s * s + c * (R(2.276) * s + R(2.577) * c));
     real g = c < R(1.6) * s ? rational : (real)(1);
-    if (OPAL_HAS_ggx) g = microfacet_is_ggx(b) ? fabs(c) * facet_masking(microfacet_ggx(b), w) : g;
+    if (OPAL_HAS_ggx) g = facets_are_ggx(b.ggx) ? fabs(c) * facet_masking(microfacet_ggx(b), w) : g;
     return v3_dot(w, h) * w.z > 0 ? g : (real)(0);
 }
 
@@ -53,7 +49,7 @@ static mask microfacet_is_mirror(microfacet_bsdf b) { return b.alpha < (real)(MI
 // D, the density of h over solid angle; 0 of a mirror.
 static real microfacet_d(microfacet_bsdf b, v3 h) {
     real d = square_to_beckmann_pdf(h, b.alpha);
-    if (OPAL_HAS_ggx) d = microfacet_is_ggx(b) ? h.z * facet_density(microfacet_ggx(b), h) : d;
+    if (OPAL_HAS_ggx) d = facets_are_ggx(b.ggx) ? h.z * facet_density(microfacet_ggx(b), h) : d;
     if (!OPAL_HAS_mirror_coats) return d;
     return microfacet_is_mirror(b) ? (real)(0) : d;
 }
@@ -81,7 +77,7 @@ static BsdfSample microfacet_sample(microfacet_bsdf b, v3 wi, v2 u, real lobe) {
     real coat_chance = microfacet_coat_chance(b);
     mask coated = lobe < coat_chance;
     v3 facet = square_to_beckmann(u, b.alpha);
-    if (OPAL_HAS_ggx) facet = v3_pick(microfacet_is_ggx(b), facet_sample(microfacet_ggx(b), wi, u), facet);
+    if (OPAL_HAS_ggx) facet = v3_pick(facets_are_ggx(b.ggx), facet_sample(microfacet_ggx(b), wi, u), facet);
     v3 mirrored = v3_sub(v3_scale(facet, 2 * v3_dot(wi, facet)), wi);
     v3 wo = v3_pick(coated, mirrored, square_to_cosine_hemisphere(u));
     v3 h = v3_pick(coated, facet, v3_normalize(v3_add(wi, wo)));

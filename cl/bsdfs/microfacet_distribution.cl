@@ -16,13 +16,17 @@ typedef struct {
     mask visible;          // facet_sample draws of the facets that are visible, else of all
 } MicrofacetDistribution;
 
-// That of parameters (microfacet_distribution.h). A kernel whose materials all have the same distribution, or all draw
-// visible facets, has that way alone.
+// The lanes whose facets are GGX's, by the parameter; a constant where the kernel's materials have one distribution.
+static mask facets_are_ggx(mask ggx) {
+    if (!OPAL_HAS_ggx) return NO_LANES;
+    return OPAL_HAS_beckmann ? ggx : ALL_LANES;
+}
+
+// The distribution of parameters (microfacet_distribution.h). A kernel whose materials all draw visible facets has that
+// way alone.
 static MicrofacetDistribution facets_of(real alpha_u, real alpha_v, mask ggx, mask visible) {
-    MicrofacetDistribution m = {real_max(alpha_u, (real)(LEAST_ALPHA)), real_max(alpha_v, (real)(LEAST_ALPHA)), ggx,
-                                visible};
-    if (!OPAL_HAS_beckmann) m.ggx = ALL_LANES;
-    if (!OPAL_HAS_ggx) m.ggx = NO_LANES;
+    MicrofacetDistribution m = {real_max(alpha_u, (real)(LEAST_ALPHA)), real_max(alpha_v, (real)(LEAST_ALPHA)),
+                                facets_are_ggx(ggx), visible};
     if (!OPAL_HAS_all_facets) m.visible = ALL_LANES;
     return m;
 }

@@ -50,7 +50,7 @@ static Bitmap bitmap_at(const Scene *scene, uints at, mask active) {
 // The bitmap's own coordinates.
 static v2 bitmap_uv(Bitmap b, v2 uv) {
     if (!(OPAL_BITMAP_FORMS & BITMAP_MAPPED)) return uv;
-    return v2_of(b.to_u.x * uv.x + b.to_u.y * uv.y + b.to_u.z, b.to_v.x * uv.x + b.to_v.y * uv.y + b.to_v.z);
+    return texture_uv(b.to_u, b.to_v, uv);
 }
 
 // Two neighbouring texels along one axis: the index of the first one, the share of the second, and how fast that grows

@@ -3,6 +3,7 @@
 //   </texture>
 #include "core/lanes.cl"
 #include "core/math.cl"
+#include "core/rows.cl"
 #include "scene.cl"
 #include "textures/interface.cl"
 #include "textures/list.h"
@@ -12,7 +13,7 @@ static mask in_first_half(real x) { return x - floor(x) <= R(0.5); }
 
 static v3 texture_checkerboard_color(const Scene *scene, uints at, TexturePoint point, mask active) {
     global const texture_checkerboard_record *record = (global const texture_checkerboard_record *)scene->textures;
-    v2 uv = texture_uv(record->to_uv, at, point.uv);
+    v2 uv = texture_uv(v3_at(record->to_uv[0], at), v3_at(record->to_uv[1], at), point.uv);
     mask first = in_first_half(uv.x) == in_first_half(uv.y);
-    return v3_pick(first, texture_words(record->color0, at), texture_words(record->color1, at));
+    return v3_pick(first, v3_at(record->color0, at), v3_at(record->color1, at));
 }

@@ -23,14 +23,7 @@ static TexturePoint texture_point(v2 uv, real b1, real b2, uints primitive) {
 static TexturePoint texture_point_of(const Surface *s) { return texture_point(s->uv, s->u, s->v, s->primitive); }
 static TexturePoint texture_point_at(v2 uv) { return texture_point(uv, (real)(0), (real)(0), (uints)(OPAL_NONE)); }
 
-// Three words of the records that begin at word `at`; `member` is that of the table's first record.
-static v3 texture_words(global const float *member, uints at) {
-    return v3_of(GATHER_WORD(real, member, at), GATHER_WORD(real, (member + 1), at),
-                 GATHER_WORD(real, (member + 2), at));
-}
-
-// The textures' own coordinates. to_uv: the member of the table's first record
-static v2 texture_uv(global const float (*to_uv)[3], uints at, v2 uv) {
-    v3 x = texture_words(to_uv[0], at), y = texture_words(to_uv[1], at);
-    return v2_of(x.x * uv.x + x.y * uv.y + x.z, y.x * uv.x + y.y * uv.y + y.z);
+// The textures' own coordinates, by the rows of to_uv.
+static v2 texture_uv(v3 to_u, v3 to_v, v2 uv) {
+    return v2_of(to_u.x * uv.x + to_u.y * uv.y + to_u.z, to_v.x * uv.x + to_v.y * uv.y + to_v.z);
 }
