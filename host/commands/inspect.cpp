@@ -212,8 +212,8 @@ void print_buffers(const FlatScene &flat) {
 void print_features(const SceneDescription &scene, const Features &features) {
     print("\nfeatures of {}\n", scene.strategy.is_general() ? "the general kernel" : "the scene's kernel");
     if (scene.strategy.specialise == Specialise::automatic && !shares_general_kernel(scene)) {
-        print("  (render --specialise auto compiles a kernel for this scene: the general kernel of other scenes lacks "
-              "some)\n");
+        print("  (render --specialise auto compiles a kernel for this scene: it has what the general kernel of other "
+              "scenes lacks)\n");
     } else if (scene.strategy.specialise == Specialise::automatic) {
         print(
             "  (on a CPU --specialise auto takes the general kernel for fewer than {:.3g} M paths; the scene asks for "

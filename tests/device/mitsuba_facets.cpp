@@ -243,13 +243,6 @@ Bsdf bsdf_of(const std::string &type, const std::string &properties) {
     return parse_bsdf(document.root(), {});
 }
 
-KernelProbe double_probe(const std::vector<Bsdf> &bsdfs) {
-    BuildOptions build;
-    build.math = device().info.fp64 ? MathMode::double_precision : MathMode::precise;
-    build.lanes = lanes_for(device().info, 0, build.math);
-    return KernelProbe(device(), scene_of_bsdfs(bsdfs), build);
-}
-
 // Mitsuba's density of Beckmann's visible facets has Smith's G1 in the rational fit of Walter et al. Opal's has it
 // exactly, because only then it integrates to 1. The latter over the former, seen from wi.
 double exact_over_fit(const Bsdf &bsdf, Vec3 wi) {
@@ -344,23 +337,11 @@ TEST_CASE("No metal or glass of facets gains light", "[mitsuba_facets]") {
                                                         u, v, distribution, is_glass ? glass : "")));
                 }
     KernelProbe probe = double_probe(bsdfs);
-    constexpr size_t side = 128;
-    Planes numbers(2 * OPAL_PROBE_PAIRS, side * side);
-    for (size_t i = 0; i < numbers.count; i++) {
-        numbers.at(0, i) = float((double(i / side) + 0.5) / side);
-        numbers.at(1, i) = float((double(i % side) + 0.5) / side);
-        numbers.at(2, i) = float((double(i * 9973 % (side * side)) + 0.5) / (side * side));
-    }
+    const Planes numbers = grid_of_numbers(128, 9973);
     for (unsigned id = 0; id < bsdfs.size(); id++)
         for (double degrees : {0.0, 30.0, 60.0, 80.0, 88.0, 89.9, 135.0, 179.0}) {
-            const double theta = degrees * std::numbers::pi / 180;
-            const Planes drawn =
-                probe.bsdf_sample(id, {std::sin(theta) * 0.6, std::sin(theta) * 0.8, std::cos(theta)}, numbers);
-            double sum = 0;
-            for (size_t i = 0; i < drawn.count; i++)
-                sum += drawn.at(BSDF_WEIGHT_R, i);
             const Case &c = cases[id];
-            const double albedo = sum / double(drawn.count);
+            const double albedo = albedo_of(probe, id, degrees, numbers);
             INFO((c.is_glass ? "glass " : "metal ") << c.distribution << " " << c.alpha_u << " " << c.alpha_v << " "
                                                     << c.ior << " at " << degrees << " degrees");
             // The fit of Beckmann's G1 is 1 where the exact one is down to 1 / 1.0018. Glass of nearly equal indices,

@@ -1,15 +1,12 @@
 // Plastics against Mitsuba 3.9.1 (scalar_rgb): values, and albedos under a white sky.
 #include "flatten/plastic_boundary.h"
-#include "read/nori/parsers.h"
 #include "support/kernel_checks.h"
 #include "support/probe.h"
 
 #include <catch2/catch.hpp>
-#include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
-#include <cmath>
-#include <numbers>
 
 using namespace opal;
 using namespace opal::test;
@@ -44,34 +41,6 @@ bsdf_roughplastic_record rough(double alpha, bool ggx, double index, double refl
             .ggx = ggx};
 }
 
-KernelProbe double_probe(const std::vector<Bsdf> &bsdfs) {
-    BuildOptions build;
-    build.math = device().info.fp64 ? MathMode::double_precision : MathMode::precise;
-    build.lanes = lanes_for(device().info, 0, build.math);
-    return KernelProbe(device(), scene_of_bsdfs(bsdfs), build);
-}
-
-// A grid of random numbers: means over it are quadratures.
-Planes grid(size_t side) {
-    Planes numbers(2 * OPAL_PROBE_PAIRS, side * side);
-    for (size_t i = 0; i < numbers.count; i++) {
-        numbers.at(0, i) = float((double(i / side) + 0.5) / double(side));
-        numbers.at(1, i) = float((double(i % side) + 0.5) / double(side));
-        numbers.at(2, i) = float((double(i * 40503 % (side * side)) + 0.5) / double(side * side));
-    }
-    return numbers;
-}
-
-double albedo_of(KernelProbe &probe, unsigned id, double degrees, const Planes &numbers) {
-    const double theta = degrees * std::numbers::pi / 180;
-    const Planes drawn =
-        probe.bsdf_sample(id, {std::sin(theta) * 0.6, std::sin(theta) * 0.8, std::cos(theta)}, numbers);
-    double sum = 0;
-    for (size_t i = 0; i < drawn.count; i++)
-        sum += drawn.at(BSDF_WEIGHT_R, i);
-    return sum / double(drawn.count);
-}
-
 } // namespace
 
 TEST_CASE("f cos, densities and samples of plastics are Mitsuba's", "[mitsuba_plastics]") {
@@ -88,7 +57,7 @@ TEST_CASE("Plastics leave what Mitsuba's leave under a white sky", "[mitsuba_pla
         bsdfs.push_back(plastic);
     }
     KernelProbe probe = double_probe(bsdfs);
-    const Planes numbers = grid(256);
+    const Planes numbers = grid_of_numbers(256, 40503);
     for (unsigned id = 0; id < bsdfs.size(); id++)
         for (size_t k = 0; k < 4; k++) {
             const Furnace &furnace = furnaces[id];
@@ -118,7 +87,7 @@ TEST_CASE("White plastics gain no light but by Mitsuba's fit and table", "[mitsu
     for (const Case &each : cases)
         bsdfs.push_back(each.bsdf);
     KernelProbe probe = double_probe(bsdfs);
-    const Planes numbers = grid(512);
+    const Planes numbers = grid_of_numbers(512, 40503);
     for (unsigned id = 0; id < bsdfs.size(); id++)
         for (double degrees : {0., 30., 60., 80., 88., 89.9, 135.}) {
             INFO(id << " at " << degrees << " degrees");
