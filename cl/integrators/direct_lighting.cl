@@ -76,6 +76,7 @@ static mask direct_lighting_step(const Scene *scene, Path *path, Hit hit, mask a
         path->throughput = v3_scale(path->throughput, discrete ? (real)(1) : 1 / light.probability);
     }
     if (CHOSEN(scene, lighting, bsdf)) by_light = NO_LANES;
+    if (MET_KINDS == 0) by_bsdf = NO_LANES;
     if (OPAL_HAS_sample_counts) {
         path->radiance = v3_add(path->radiance, light_by_samples(scene, path, &s, by_light));
         by_light = NO_LANES;

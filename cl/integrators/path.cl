@@ -24,7 +24,7 @@ static mask path_step(const Scene *scene, Path *path, Hit hit, mask active) {
     mask by_light = CHOSEN(scene, lighting, bsdf) ? NO_LANES : active & !bsdf_is_discrete(scene, s.bsdf);
     v2 u = path_draw(scene, path, DIM_LOBE);
     DirectLight direct;
-    active = interact(scene, path, &s, by_light, active, u.x, &direct);
+    active = interact(scene, path, &s, by_light, next_segment_counts(scene, path, &s, active), u.x, &direct);
     active = roulette(scene, path, active, u.y);
 
     add_radiance(scene, path, visible_light(scene, direct));

@@ -109,6 +109,16 @@ static CALLED v3 light_met(const Scene *scene, const Path *path, const Surface *
     return v3_pick(met, radiance, none);
 }
 
+// The lanes of `active` whose BSDF draws the next segment: not those in which it would be the last one and meet no
+// light that counts.
+static mask next_segment_counts(const Scene *scene, const Path *path, const Surface *s, mask active) {
+    mask last = !to_mask(path->depth + 1u < scene->settings->max_depth);
+    if (MET_KINDS == 0) return active & !last;
+    if (!CHOSEN(scene, lighting, emitter)) return active;
+    if (MIXED_BSDFS) return active;
+    return active & (!last | bsdf_is_discrete(scene, s->bsdf));
+}
+
 // Samples one direction to one emitter as the light of surface s, before its BSDF is asked. Sets *wo to the direction
 // in the surface's frame. inverse_pdf includes the choice of the emitter.
 static LightSample sample_light(const Scene *scene, const Path *path, const Surface *s, mask active, v3 *wo) {
@@ -135,7 +145,7 @@ typedef struct {
 static DirectLight direct_light(const Scene *scene, const Path *path, const Surface *s, LightSample light,
                                 BsdfResponse bsdf) {
     real inverse_pdf = light.inverse_pdf;
-    if (CHOSEN(scene, lighting, mis)) {
+    if (MET_KINDS > 0 && CHOSEN(scene, lighting, mis)) {
         real ratio = bsdf.pdf * inverse_pdf;
         if (OPAL_HAS_sample_counts) ratio = ratio / light_samples_per_bsdf_sample(scene);
         real weight = mis_weight(scene, light.discrete ? (real)(0) : ratio);

@@ -605,6 +605,8 @@ TEST_CASE_METHOD(MitsubaFixture, "plastics have Mitsuba's names and defaults", "
     CHECK(record.alpha.value == 0.3f);
     CHECK(record.ggx == 1);
     CHECK(record.sample_visible == 0);
+    CHECK(bsdf("roughplastic", "<float name='alpha_u' value='0.3'/><float name='alpha_v' value='0.3'/>").words ==
+          words_of(bsdf_roughplastic_record{.alpha = 0.3f}));
     // Without roughness it is the smooth one, with its textures.
     const Bsdf smooth = bsdf("roughplastic", "<float name='alpha' value='0'/><boolean name='nonlinear' value='true'/>"
                                              "<texture type='checkerboard' name='diffuse_reflectance'/>");
@@ -690,6 +692,10 @@ TEST_CASE_METHOD(MitsubaFixture, "what Opal cannot render is an error with its p
          ":3:1: property 'int_ior': must differ from ext_ior"},
         {in_bsdf("roughplastic", "<float name='alpha' value='-0.1'/>"), ":3:1: property 'alpha': must be 0 to 1"},
         {in_bsdf("roughplastic", "<float name='alpha' value='1.5'/>"), ":3:1: property 'alpha': must be 0 to 1"},
+        {in_bsdf("roughplastic", "<float name='alpha_u' value='0.2'/>\n<float name='alpha_v' value='0.3'/>"),
+         ":4:1: property 'alpha_v': must be alpha_u: roughplastic has one roughness in all directions"},
+        {in_bsdf("roughplastic", "<float name='alpha_v' value='0.3'/>"),
+         ":2:22: alpha_u and alpha_v must be given together"},
         {in_bsdf("roughplastic", "<texture name='alpha' type='checkerboard'/>"),
          ":3:1: property 'alpha' is a <texture> here, but must"},
         {in_bsdf("roughplastic", "<float name='alpha' value='0'/>\n<float name='int_ior' value='4'/>"),

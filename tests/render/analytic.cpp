@@ -27,6 +27,10 @@ TEST_CASE("A point light follows the inverse square", "[analytic][stat]") {
     require_all_pass(check_point_light(Sources::embedded(), test_seed(4)));
 }
 
+TEST_CASE("A last segment is left out only where it meets no light that counts", "[analytic][stat]") {
+    require_all_pass(check_last_segments(Sources::embedded(), test_seed(7)));
+}
+
 TEST_CASE("Interpolated normals point away from the middle", "[analytic]") {
     require_all_pass(check_smooth_normals(Sources::embedded(), test_seed(5)));
 }

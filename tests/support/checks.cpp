@@ -1,5 +1,6 @@
 #include "support/checks.h"
 
+#include "selftest/checks.h"
 #include "stats/hypothesis.h"
 #include "support/pictures.h"
 #include "support/rooms.h"
@@ -166,6 +167,26 @@ Findings check_point_light(const Sources &sources, unsigned seed) {
     simple.simple_light = {std::get<emitter_point>(simple.lights[0].parameters).position, {80, 0, 0}};
     const Film film = render_general(simple, {{"integrator", "simple"}}, 4, seed, sources);
     findings.push_back(mean_is("integrator simple", film, point_light_truth(), 0));
+    return findings;
+}
+
+Findings check_last_segments(const Sources &sources, unsigned seed) {
+    Findings findings;
+    const auto shows = [&](const std::string &what, const SceneDescription &scene, Overrides how, double truth) {
+        const std::string text = what + ", " + text_of(how);
+        how["specialise"] = "on";
+        how["lanes"] = "1"; // which compiles soonest
+        RenderSetup setup;
+        setup.sources = &sources;
+        const Film film = render(with_strategy(scene, how), 4096, seed + unsigned(findings.size()), setup);
+        findings.push_back(mean_is(text, film, truth, 0));
+    };
+    const double reflected = fresnel_reflectance(1, 1, 1.5);
+    shows("a pane before a lamp", reflection(1.5f), {{"lighting", "emitter"}}, reflected);
+    shows("a pane before a lamp", reflection(1.5f), {{"lighting", "mis"}}, reflected);
+    shows("triangle light", triangle_light(), {{"lighting", "mis"}}, triangle_light_truth());
+    shows("point light", point_light(), {{"lighting", "mis"}, {"max-depth", "2"}}, point_light_truth());
+    shows("point light", point_light(), {{"integrator", "direct_lighting"}}, point_light_truth());
     return findings;
 }
 

@@ -26,6 +26,8 @@ using Check = std::function<Findings(const Sources &sources, unsigned seed)>;
 Findings check_furnace(const Sources &sources, unsigned seed);
 Findings check_glass_furnace(const Sources &sources, unsigned seed);
 Findings check_triangle_light(const Sources &sources, unsigned seed);
+// Kernels of one scene, which leave out the last segments that meet no light that counts.
+Findings check_last_segments(const Sources &sources, unsigned seed);
 Findings check_sphere_light(const Sources &sources, unsigned seed); // and the furnace in a sphere
 Findings check_point_light(const Sources &sources, unsigned seed);  // integrator simple, too
 Findings check_smooth_normals(const Sources &sources, unsigned seed);

@@ -50,15 +50,6 @@ SceneDescription lamps(const std::vector<double> &others) {
     return scene;
 }
 
-// A pane seen at right angles: reflected paths meet a light, refracted ones leave the scene.
-SceneDescription reflection(float index) {
-    SceneDescription scene = scene_of({made_of(quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), examples::dielectric(index)),
-                                       light(Parallelogram{{-1, 2, -1}, {2, 0, 0}, {0, 0, 2}}, {1, 1, 1})});
-    scene.camera = camera({0, 1, 0}, {0, 0, 0}, 1, 1, 1e-3);
-    scene.strategy.max_depth = 2;
-    return scene;
-}
-
 // A mesh light of `count` equal triangles. The floor sees the first, straight above; all others face up.
 constexpr double small = 1.0 / 2048;
 SceneDescription one_triangle_of(unsigned count) {

@@ -152,6 +152,14 @@ double point_light_truth() {
     return floor_albedo / std::numbers::pi * 100 / (4 * std::numbers::pi) * d.y / std::pow(length(d), 3);
 }
 
+SceneDescription reflection(float index) {
+    SceneDescription scene = scene_of({made_of(quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), examples::dielectric(index)),
+                                       light(Parallelogram{{-1, 2, -1}, {2, 0, 0}, {0, 0, 2}}, {1, 1, 1})});
+    scene.camera = camera({0, 1, 0}, {0, 0, 0}, 1, 1, 1e-3);
+    scene.strategy.max_depth = 2;
+    return scene;
+}
+
 SceneDescription gallery(int width, int height) {
     return room({made_of(quad({0.98, -0.6, -0.2}, {0, 0, 0.8}, {0, 0.9, 0}), examples::mirror()),
                  made_of(quad({-0.8, -0.7, 0.97}, {0, 0.9, 0}, {0.8, 0, 0}), examples::microfacet(0.2, 0.3)),

@@ -35,6 +35,9 @@ SceneDescription triangle_light();
 double triangle_light_truth();
 
 // A point light of 100 W above a floor, seen as the triangle light's floor is, in red.
+// A pane seen at right angles: reflected paths meet a light of radiance 1, refracted ones leave the scene.
+SceneDescription reflection(float index);
+
 SceneDescription point_light();
 double point_light_truth(); // albedo / pi * power / (4 pi) * cos / d^2
 

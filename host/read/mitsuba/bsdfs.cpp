@@ -125,16 +125,22 @@ void set_facet_choices(Object &object, Bsdf &bsdf) {
     set_flag(bsdf, "sample_visible", object.boolean("sample_visible").value_or(true));
 }
 
+// Which roughnesses are given: one, or two, or none.
+void check_alphas(Object &object) {
+    const bool one = object.has("alpha");
+    for (const char *name : {"alpha_u", "alpha_v"})
+        object.check(!one || !object.has(name), name, "there is either alpha, or alpha_u and alpha_v");
+    if (!one && object.has("alpha_u") != object.has("alpha_v"))
+        object.mistake("alpha_u and alpha_v must be given together");
+}
+
 // The parameters of facets of two roughnesses.
 void set_facets(Importer &importer, Object &object, Bsdf &bsdf) {
-    const bool one = object.has("alpha");
+    check_alphas(object);
     for (const char *name : {"alpha_u", "alpha_v"}) {
-        object.check(!one || !object.has(name), name, "there is either alpha, or alpha_u and alpha_v");
         set_parameter(importer, object, "alpha", bsdf, name);
         set_parameter(importer, object, name, bsdf, name);
     }
-    if (!one && object.has("alpha_u") != object.has("alpha_v"))
-        object.mistake("alpha_u and alpha_v must be given together");
     set_facet_choices(object, bsdf);
 }
 
@@ -185,10 +191,16 @@ Bsdf parse_plastic(Importer &importer, Object &object) {
 Bsdf parse_roughplastic(Importer &importer, Object &object) {
     Bsdf bsdf = bsdf_roughplastic_record{};
     set_plastic(importer, object, bsdf);
+    check_alphas(object);
     const Parameter &alpha = *bsdf_parameter(BSDF_roughplastic, "alpha");
-    const double given = object.number("alpha").value_or(alpha.initial);
-    object.check(alpha.range.holds(given), "alpha", "must be " + text_of(alpha.range));
-    set_number(bsdf, "alpha", given);
+    for (const char *name : {"alpha", "alpha_u", "alpha_v"})
+        if (const std::optional<double> given = object.number(name)) {
+            object.check(alpha.range.holds(*given), name, "must be " + text_of(alpha.range));
+            set_number(bsdf, "alpha", *given);
+        }
+    object.check(!object.has("alpha_u") || !object.has("alpha_v") ||
+                     object.number("alpha_u") == object.number("alpha_v"),
+                 "alpha_v", "must be alpha_u: roughplastic has one roughness in all directions");
     set_facet_choices(object, bsdf);
     return checked_plastic(object, without_facets(bsdf));
 }
