@@ -4,9 +4,10 @@
 // - Where n' faces away from the viewer, it is turned about n by half a turn (flip_invalid_normals). Without that the
 //   viewer is behind n', where most BSDFs are black.
 // - A direction on one side of n and the other side of n' carries no light.
-// - Light from wo is darkened by G = 2 / (1 + sqrt(1 + a^2 tan^2(n, wo))), a^2 = tan^2(n, n') / 8, so that it fades out
-//   before that edge (use_shadowing_function; Estevez, Lecocq and Stein 2019, "A Microfacet-Based Shadowing Function to
-//   Solve the Bump Terminator Problem", Ray Tracing Gems, chapter 12). The weight of each sample has G, too.
+// - Light from wo is darkened by G = 2 / (1 + sqrt(1 + a^2 tan^2(n, wo))), where a^2 is tan^2(n, n') / 8 and at most 1,
+//   so that it fades out before that edge (use_shadowing_function; Estevez, Lecocq and Stein 2019, "A Microfacet-Based
+//   Shadowing Function to Solve the Bump Terminator Problem", Ray Tracing Gems, chapter 12). The weight of each sample
+//   has G, too.
 #include "bsdfs/interface.cl"
 #include "core/lanes.cl"
 #include "core/math.cl"
@@ -48,8 +49,9 @@ static real perturbation_factor(const Surface *s, v3 wo) {
         v3 before = s->perturbations[i].normal;
         real cosine_before = v3_dot(before, wo), turn = v3_dot(before, normal);
         real product = fabs(cosine_before * turn); // G, multiplied out by the cosines
-        real sines = real_max(1 - square(cosine_before), (real)(0)) * real_max(1 - square(turn), (real)(0));
-        real g = 2 * product / (product + sqrt(square(product) + R(0.125) * sines));
+        real slope = real_min(R(0.125) * real_max(1 - square(turn), (real)(0)), square(turn));
+        real sine2 = real_max(1 - square(cosine_before), (real)(0));
+        real g = 2 * product / (product + sqrt(square(product) + slope * sine2));
         factor = s->perturbations[i].shadows ? factor * g : factor;
         factor = cosine * cosine_before > 0 ? factor : (real)(0);
         normal = before;
