@@ -1,6 +1,7 @@
 // scene: the scene's tables and settings as a struct of pointers that every function takes; rays, hits, random numbers.
 #include "core/lanes.cl"
 #include "core/rng.cl"
+#include "emitters/list.h"
 #include "scene_tables.h"
 #include "shared/counters.h"
 #include "shared/strategy.h"
@@ -28,6 +29,17 @@ static void add_count(const Scene *scene, uint counter, uint many) {
 #define CHOSEN(scene, axis, choice) \
     (OPAL_AXIS_##axis < 0 ? (scene)->settings->choices[AXIS_##axis] == CHOICE_##axis##_##choice \
                           : OPAL_AXIS_##axis == CHOICE_##axis##_##choice)
+
+#define COUNT_EMITTER(name, traits) +OPAL_HAS_emitter_##name
+#define COUNT_MET(name, traits) +(OPAL_HAS_emitter_##name && OPAL_CAN_BE_MET(traits))
+#define COUNT_ENVIRONMENT(name, traits) +(OPAL_HAS_emitter_##name && OPAL_IS_ENVIRONMENT(traits))
+#define COUNT_INFINITE(name, traits) +(OPAL_HAS_emitter_##name && ((traits) & OPAL_INFINITE) != 0)
+enum { // the kinds of emitters that this kernel has
+    EMITTER_KINDS = 0 OPAL_EMITTERS(COUNT_EMITTER),
+    MET_KINDS = 0 OPAL_EMITTERS(COUNT_MET),                 // that a ray can meet
+    ENVIRONMENT_KINDS = 0 OPAL_EMITTERS(COUNT_ENVIRONMENT), // that a ray meets where it leaves the scene
+    INFINITE_KINDS = 0 OPAL_EMITTERS(COUNT_INFINITE),
+};
 
 // Rays, one a lane. d need not be unit; a hit has tmin < t < tmax.
 typedef struct {

@@ -10,17 +10,6 @@
 #include "textures/dispatch.cl"
 #include "textures/interface.cl"
 
-#define COUNT_EMITTER(name, traits) +OPAL_HAS_emitter_##name
-#define COUNT_MET(name, traits) +(OPAL_HAS_emitter_##name && OPAL_CAN_BE_MET(traits))
-#define COUNT_ENVIRONMENT(name, traits) +(OPAL_HAS_emitter_##name && OPAL_IS_ENVIRONMENT(traits))
-#define COUNT_INFINITE(name, traits) +(OPAL_HAS_emitter_##name && ((traits) & OPAL_INFINITE) != 0)
-enum { // kinds of this kernel
-    EMITTER_KINDS = 0 OPAL_EMITTERS(COUNT_EMITTER),
-    MET_KINDS = 0 OPAL_EMITTERS(COUNT_MET),                 // that a ray can meet
-    ENVIRONMENT_KINDS = 0 OPAL_EMITTERS(COUNT_ENVIRONMENT), // that a ray meets where it leaves the scene
-    INFINITE_KINDS = 0 OPAL_EMITTERS(COUNT_INFINITE),
-};
-
 // The kind, where the kernel has several; else nobody asks.
 static uints emitter_kind(const Scene *scene, uints id) {
     if (EMITTER_KINDS < 2) return (uints)(0);

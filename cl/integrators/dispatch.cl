@@ -11,3 +11,10 @@ static mask integrator_step(const Scene *scene, Path *path, Hit hit, mask active
     OPAL_CHOICES_integrator(STEP)
     return NO_LANES;
 }
+
+// The lanes whose path ends where its ray hits, and asks there for nothing but the light that it meets.
+static mask on_last_ray(const Scene *scene, const Path *path) {
+    if (!OPAL_HAS_last_rays) return NO_LANES;
+    if (CHOSEN(scene, integrator, direct_lighting)) return to_mask(path->depth > 1u);
+    return to_mask(path->depth >= scene->settings->max_depth);
+}

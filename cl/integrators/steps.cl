@@ -51,7 +51,7 @@ static Hit pass_hidden_emitters(const Scene *scene, Path *path, Hit hit, mask ac
         path->ray.o = v3_pick(passing, leave_surface(&s, path->ray.d), path->ray.o);
         path->ray.tmin = passing ? (real)(0) : path->ray.tmin;
         path->ray.tmax = passing ? path->ray.tmax - s.t : path->ray.tmax;
-        hit = hit_pick(passing, closest_hit(scene, path->ray, passing), hit);
+        hit = hit_pick(passing, closest_hit(scene, path->ray, passing, NO_LANES), hit);
         add_count(scene, COUNTER_rays, count_lanes(passing));
         passing = passing & is_hit(hit);
     }

@@ -51,6 +51,8 @@
     OPAL_FEATURE_ROW(tree, "tree") \
     /* the tree is larger than a core's caches: walks prefetch waiting children */ \
     OPAL_FEATURE_ROW(large_tree, "large_tree") \
+    /* the last ray of a path asks for lights alone, and no light is in the tree: most such rays need not walk it */ \
+    OPAL_FEATURE_ROW(last_rays, "last_rays") \
     /* a path may be endless: a launch ends after so many rounds, and the next one goes on with its paths */ \
     OPAL_FEATURE_ROW(endless_paths, "endless_paths")
 

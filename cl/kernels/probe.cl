@@ -165,7 +165,7 @@ kernel void trace(SCENE_PARAMETERS, global const float *rays, global float *out,
     Scene scene = SCENE_OF_PARAMETERS;
     Ray ray = {get_v3(rays, RAY_O_X, stride, base), get_v3(rays, RAY_D_X, stride, base),
                get(rays, RAY_TMIN, stride, base), get(rays, RAY_TMAX, stride, base)};
-    Hit hit = closest_hit(&scene, ray, ALL_LANES);
+    Hit hit = closest_hit(&scene, ray, ALL_LANES, NO_LANES);
     mask active = is_hit(hit);
     Surface s = no_surface();
     if (ANY(active)) s = surface_at(&scene, ray, hit, active);

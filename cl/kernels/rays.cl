@@ -84,7 +84,7 @@ kernel void generate(SCENE_PARAMETERS, uint kind, float lo_x, float lo_y, float 
     Sampler sampler = sampler_start(i, (uints)(0), settings->seed);
     Ray ray = tiled_camera_ray(&scene, sampler, i);
     if (kind != RAYS_camera) {
-        Hit hit = closest_hit(&scene, ray, active);
+        Hit hit = closest_hit(&scene, ray, active, NO_LANES);
         active = active & is_hit(hit);
         Surface s = no_surface();
         if (ANY(active)) s = surface_at(&scene, ray, hit, active);
@@ -115,7 +115,7 @@ kernel void closest_hits(SCENE_PARAMETERS, global const float *rays, global floa
     for (uint base = first_ray(rays_an_item); base < end_of_rays(rays_an_item, count); base += LANES) {
         mask active = to_mask(lane_indices(base) < count);
         Ray ray = get_ray(rays, stride, base);
-        Hit hit = closest_hit(&scene, ray, active);
+        Hit hit = closest_hit(&scene, ray, active, NO_LANES);
         mask active_hit = is_hit(hit) & active;
         Surface s = no_surface();
         if (ANY(active_hit)) s = surface_at(&scene, ray, hit, active_hit);

@@ -52,8 +52,9 @@ kernel void render(SCENE_PARAMETERS, global float *samples, uint first_item, uin
         if (ended) active = active | refill(&scene, &starts, &path, ended);
         ended = 0;
         if (ANY(active)) {
-            Hit hit = closest_hit(&scene, path.ray, active);
-            if (OPAL_REPEAT_traversal) hit = closest_hit(&scene, same_ray(path.ray, hit.t > -1), active);
+            mask last = on_last_ray(&scene, &path);
+            Hit hit = closest_hit(&scene, path.ray, active, last);
+            if (OPAL_REPEAT_traversal) hit = closest_hit(&scene, same_ray(path.ray, hit.t > -1), active, last);
             add_count(&scene, COUNTER_rays, count_lanes(active));
             hit = pass_hidden_emitters(&scene, &path, hit, active);
             add_count(&scene, COUNTER_rounds, 1);

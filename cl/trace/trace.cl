@@ -4,6 +4,7 @@
 #include "core/lanes.cl"
 #include "scene.cl"
 #include "shapes/dispatch.cl"
+#include "shapes/triangle.cl"
 #include "shared/types.h"
 #include "trace/faces.cl"
 #include "trace/rays.cl"
@@ -20,11 +21,22 @@ static bool has_tree(const Scene *scene) {
     return !GENERAL || scene->nodes->child[0] != OPAL_NONE;
 }
 
-// The nearest hit of each active lane.
-static CALLED Hit closest_hit(const Scene *scene, Ray ray, mask active) {
+// The lanes of `last` that cannot meet a light, by the nearest face of the list, which holds all surfaces that emit.
+static mask cannot_meet_light(const Scene *scene, Hit face, mask last) {
+    mask on_face = last & is_hit(face);
+    uints triangle = triangle_id(scene, uints_pick(on_face, face.place, (uints)(0)));
+    uints emitter = GATHER(uints, scene->meshes, GATHER(uints, scene->triangles, triangle, .mesh), .emitter);
+    mask dark_face = on_face & to_mask(emitter == OPAL_NONE);
+    return ENVIRONMENT_KINDS > 0 ? dark_face : dark_face | (last & !is_hit(face));
+}
+
+// The nearest hit of each active lane. last: the lanes whose ray asks for nothing but the light that it meets. Where
+// that is none, their hit may be any but a light.
+static CALLED Hit closest_hit(const Scene *scene, Ray ray, mask active, mask last) {
     Hit hit = no_hit(ray.tmax);
     if (OPAL_HAS_face_list) hit = faces_closest(scene, ray);
     if (!has_tree(scene)) return hit;
+    if (OPAL_HAS_last_rays && ANY(last & active)) active = active & !cannot_meet_light(scene, hit, last & active);
     ray.tmax = hit.t;
     TreeRays rays;
     prepare_rays(&rays, scene, ray, active);

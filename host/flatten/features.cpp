@@ -214,6 +214,20 @@ public:
                 fmt::format("{:.1f} MiB of nodes and blocks", double(scene.tree_bytes()) / (1 << 20))};
     }
 
+    Decision last_rays() const {
+        if (!integrator.reads(AXIS_lighting))
+            return {false, "this integrator's last rays ask for more than lights"};
+        if (integrator.reads(AXIS_rr) && description.strategy.max_depth == no_limit)
+            return {false, "no ray is known to be a path's last"};
+        if (!face_list().on || !tree().on)
+            return {false, "there are not both listed faces and a tree"};
+        if (std::ranges::none_of(scene.emitters, [](const EmitterRecord &e) { return can_be_met(e.kind); }))
+            return {false, "no ray meets a light"};
+        const std::size_t inside = shining_in_tree();
+        return {inside == 0, inside ? fmt::format("{} of lights in the tree", plural(inside, "shape", "shapes"))
+                                    : "no light is in the tree"};
+    }
+
     Decision endless_paths() const {
         const double segments = longest_path(description.strategy);
         return {segments > longest_path_of_a_launch,
@@ -221,6 +235,21 @@ public:
     }
 
 private:
+    // Triangles and spheres that emit, but those of the face list.
+    std::size_t shining_in_tree() const {
+        const auto emits = [&](uint triangle) {
+            return scene.meshes[scene.triangles[triangle].mesh].emitter != OPAL_NONE;
+        };
+        std::size_t count = std::size_t(std::ranges::count(scene.emitters, uint(EMITTER_sphere), &EmitterRecord::kind));
+        for (uint i = 0; i < scene.triangles.size(); i++)
+            count += emits(i);
+        for (std::size_t block = scene.settings.face_list_slot / OPAL_WIDTH; block < scene.triangle_blocks.size();
+             block++)
+            for (uint id : scene.triangle_blocks[block].id)
+                count -= id != OPAL_NONE && emits(id);
+        return count;
+    }
+
     const SceneDescription &description;
     const FlatScene &scene;
     int lanes;
@@ -311,11 +340,12 @@ std::array<uint, BSDF_COUNT> find_nonzero(const FlatScene &scene, bool specialis
 }
 
 // Does a program for all scenes have the feature? Where no scene of that width has it, or where it costs most scenes
-// more than it saves a few, it has not: prefetching a tree that fits into the caches takes 5 to 10 % of its time.
+// more than it saves a few, it has not: prefetching a tree that fits into the caches takes 5 to 10 % of its time. Nor
+// has it what is wrong where a scene does not allow it.
 bool general_has(unsigned feature, int lanes) {
     if (feature == FEATURE_face_list)
         return lanes >= FACE_LIST_LANES;
-    return feature != FEATURE_large_tree;
+    return feature != FEATURE_large_tree && feature != FEATURE_last_rays;
 }
 
 // Features whose scenes have a general kernel of their own, which does not ask at run time.

@@ -54,6 +54,30 @@ TEST_CASE("a BSDF comes with those that it leads to, each record once", "[featur
     CHECK(outer.traits() == OPAL_SMOOTH);
 }
 
+TEST_CASE("last rays need not walk a tree without lights", "[features]") {
+    const Parallelogram floor{{-1, 0, -1}, {0, 0, 2}, {2, 0, 0}}, lamp{{-1, 1, -1}, {2, 0, 0}, {0, 0, 2}};
+    SceneDescription scene = scene_of({diffuse(floor), light(lamp, {1, 1, 1}), diffuse(Sphere{{0, 0.5, 0}, 0.1})});
+    const auto reason = [&](int lanes = 8) {
+        const Feature last_rays = flatten(scene, lanes).features.list[FEATURE_last_rays];
+        return std::string(last_rays.on ? "yes: " : "no: ") + last_rays.reason;
+    };
+    CHECK(reason() == "no: no ray is known to be a path's last");
+    scene.strategy.max_depth = 3;
+    CHECK(reason() == "yes: no light is in the tree");
+    CHECK(reason(1) == "no: there are not both listed faces and a tree");
+    scene.strategy.max_depth = no_limit;
+    scene.strategy[AXIS_integrator] = CHOICE_integrator_direct_lighting;
+    CHECK(reason() == "yes: no light is in the tree");
+    scene.meshes.push_back(light(Sphere{{0, 0.7, 0}, 0.1}, {1, 1, 1}));
+    CHECK(reason() == "no: 1 shape of lights in the tree");
+    scene.meshes.erase(scene.meshes.begin() + 1);
+    scene.meshes.back() = diffuse(Sphere{{0, 0.7, 0}, 0.1});
+    scene.lights = {{emitter_point{{0, 1, 0}, {1, 1, 1}}, {}}};
+    CHECK(reason() == "no: no ray meets a light");
+    scene.strategy[AXIS_integrator] = CHOICE_integrator_whitted;
+    CHECK(reason() == "no: this integrator's last rays ask for more than lights");
+}
+
 TEST_CASE("numbers that are 0 in all principled materials are 0 in the kernel", "[features]") {
     SceneDescription description = scene_of({diffuse(one_triangle), diffuse(one_triangle), diffuse(one_triangle)});
     description.meshes[0].bsdf = bsdf_principled_record{.metallic = 1};
@@ -199,7 +223,8 @@ TEST_CASE("features are what the scene and the strategy ask for, each with a rea
         const Features others = flatten(description, 8).features;
         for (unsigned feature = 0; feature < FEATURE_COUNT; feature++) {
             INFO(feature_name(feature));
-            const bool everywhere = !of_its_own.contains(feature) && feature != FEATURE_large_tree;
+            const bool everywhere =
+                !of_its_own.contains(feature) && feature != FEATURE_large_tree && feature != FEATURE_last_rays;
             CHECK(features[feature] == (everywhere && !second.contains(feature)));
             CHECK(others[feature] == everywhere);
         }

@@ -128,7 +128,7 @@ const std::vector<Room> floors = {
     {"scene_tables.h",
      {"shared", "shapes/list.h", "bsdfs/list.h", "emitters/list.h", "cameras/list.h", "textures/list.h"}},
     {"core", {}},
-    {"scene.cl", {"shared", "scene_tables.h", "core"}},
+    {"scene.cl", {"shared", "emitters/list.h", "scene_tables.h", "core"}},
     {"surface.cl", {"shared", "core", "scene.cl"}},
     {"shapes", {"shared", "shapes/list.h", "core", "scene.cl", "surface.cl"}},
     {"trace", {"shared", "shapes/list.h", "core", "scene.cl", "shapes"}},

@@ -102,7 +102,8 @@ TEST_CASE("The program text defines width, precision, every feature and every ax
                          "#define OPAL_REPEAT_traversal 0\n#define OPAL_REPEAT_sampling 0\n"
                          "#define OPAL_HAS_bsdf_diffuse 0\n"));
     CHECK_THAT(text, Catch::Contains("#define OPAL_HAS_face_list 0\n#define OPAL_HAS_tree 1\n"
-                                     "#define OPAL_HAS_large_tree 0\n#define OPAL_HAS_endless_paths 0\n"
+                                     "#define OPAL_HAS_large_tree 0\n#define OPAL_HAS_last_rays 0\n"
+                                     "#define OPAL_HAS_endless_paths 0\n"
                                      "#define OPAL_TEXTURED_bsdf_diffuse 0\n"));
     CHECK_THAT(text, Catch::Contains("#define OPAL_AXIS_integrator -1\n#define OPAL_AXIS_lighting 2\n"));
     CHECK_THAT(text, Catch::Contains("#define OPAL_AXIS_sampler -1\n"));

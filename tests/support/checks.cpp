@@ -172,14 +172,15 @@ Findings check_point_light(const Sources &sources, unsigned seed) {
 
 Findings check_last_segments(const Sources &sources, unsigned seed) {
     Findings findings;
-    const auto shows = [&](const std::string &what, const SceneDescription &scene, Overrides how, double truth) {
-        const std::string text = what + ", " + text_of(how);
+    const auto sample = [&](const SceneDescription &scene, Overrides how) {
         how["specialise"] = "on";
-        how["lanes"] = "1"; // which compiles soonest
+        how.try_emplace("lanes", "1"); // which compiles soonest
         RenderSetup setup;
         setup.sources = &sources;
-        const Film film = render(with_strategy(scene, how), 4096, seed + unsigned(findings.size()), setup);
-        findings.push_back(mean_is(text, film, truth, 0));
+        return render(with_strategy(scene, how), 4096, seed + unsigned(findings.size()), setup);
+    };
+    const auto shows = [&](const std::string &what, const SceneDescription &scene, const Overrides &how, double truth) {
+        findings.push_back(mean_is(what + ", " + text_of(how), sample(scene, how), truth, 0));
     };
     const double reflected = fresnel_reflectance(1, 1, 1.5);
     shows("a pane before a lamp", reflection(1.5f), {{"lighting", "emitter"}}, reflected);
@@ -187,6 +188,13 @@ Findings check_last_segments(const Sources &sources, unsigned seed) {
     shows("triangle light", triangle_light(), {{"lighting", "mis"}}, triangle_light_truth());
     shows("point light", point_light(), {{"lighting", "mis"}, {"max-depth", "2"}}, point_light_truth());
     shows("point light", point_light(), {{"integrator", "direct_lighting"}}, point_light_truth());
+    // With a ball, which is in the tree as the lamp is not: aside, and before the lamp.
+    const Overrides by_bsdf{{"lighting", "bsdf"}, {"lanes", "8"}};
+    SceneDescription ball = reflection(1.5f);
+    ball.meshes.push_back(diffuse(Sphere{{0.7, 1.5, 0.7}, 0.2}));
+    shows("a pane, a ball and a lamp", ball, by_bsdf, reflected);
+    ball.meshes.back() = diffuse(Sphere{{0, 1.5, 0}, 0.2});
+    findings.push_back(exact("a lamp behind a ball", sample_of(sample(ball, by_bsdf), 0).mean == 0));
     return findings;
 }
 
