@@ -162,7 +162,8 @@ static uints place_after(uints place, uints blends) { return place + ((uints)(0x
 
 // The response of a surface whose BSDF may be a blend. One leaf is drawn by the shares, and draws a direction. If that
 // has a density, its weight is f cos / pdf of all leaves together, as MIS needs it: each other leaf is asked for the
-// direction to the light, and then for the drawn one. opened_respond, a kernel's longest code, stands here once.
+// direction to the light, and then for the drawn one. Weights are of power, f is of radiance: eta^2 lies between them.
+// opened_respond, a kernel's longest code, stands here once.
 static BsdfResponse blend_respond(const Scene *scene, const Surface *s, v3 wo, mask evaluated, BsdfNumbers numbers,
                                   mask sampled) {
     v3 to_light = to_world(s->frame, wo), drawn = to_light, drawn_f_cos = to_light;
@@ -206,7 +207,7 @@ static BsdfResponse blend_respond(const Scene *scene, const Surface *s, v3 wo, m
             all.pdf = all.pdf + pdf;
             turn = 2;
         } else {
-            drawn_f_cos = v3_add(drawn_f_cos, f_cos);
+            drawn_f_cos = v3_mad(f_cos, square(all.sample.eta), drawn_f_cos);
             drawn_pdf = drawn_pdf + pdf;
             uints next = place_after(leaf.place, leaf.blends);
             next = uints_pick(to_mask(next == drawn_place) & to_mask(next != 0u), after_drawn, next);
