@@ -1,10 +1,10 @@
 #!/bin/sh
-# Mitsuba 3.9.1 (PyPI): within a `bumpmap`, also a flat one, an anisotropic material answers otherwise as its shape turns.
+# Mitsuba 3.9.1 (PyPI): within a `bumpmap`, also a flat one, an anisotropic material changes as its shape turns.
 #
-# Guess before the run: a `bumpmap` of a constant picture changes nothing, and directions that turn with a shape find the
-# same f cos, however the shape is turned about its normal. Seen: so it is for a `roughconductor` of alpha 0.1 and 0.5
-# alone and within a flat `normalmap`. Within a flat `bumpmap` f cos grows from 0.146 to 1.55 as the rectangle turns by
-# 90 degrees: the direction of its highlight stays where it was in the world. Isotropic materials are right.
+# Guess before the run: a `bumpmap` of a constant picture changes nothing, and directions that turn with a shape find
+# the same f cos, however the shape is turned about its normal. Seen: so it is for a `roughconductor` of alpha 0.1 and
+# 0.5 alone and within a flat `normalmap`. Within a flat `bumpmap` f cos grows from 0.146 to 1.55 as the rectangle
+# turns by 90 degrees: the direction of its highlight stays where it was in the world. Isotropic materials are right.
 # What helps: a `normalmap` in place of the `bumpmap`, or shapes whose dp/du is the x axis.
 set -eu
 folder=$(mktemp -d)

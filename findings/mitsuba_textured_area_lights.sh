@@ -6,7 +6,8 @@
 # its BSDF (0 and 1). Seen: BSDF samples do. Light samples agree for a rectangle and a mesh, have 0.8 of it for a
 # sphere and nothing for a cube. A rectangle that `flip_normals` turns away from the floor still lights it by light
 # samples, as if it were not turned. With `path` and `direct` by default the sum is in between, by their MIS weights.
-# What helps: no texture on the radiance of spheres, cubes and shapes with `flip_normals`; a rectangle that a rotation turns.
+# What helps: no texture on the radiance of spheres, cubes and shapes with `flip_normals`; rectangles that a rotation
+# turns.
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -48,7 +49,8 @@ def mean(lamp, radiance, emitter_samples, bsdf_samples):
              "sensor": {"type": "perspective", "fov": 8, "to_world": T().look_at([4, 0, 1], [0, 0, 0], [0, 0, 1]),
                         "film": {"type": "hdrfilm", "width": 4, "height": 4, "rfilter": {"type": "box"}},
                         "sampler": {"type": "independent", "sample_count": 32768}},
-             "floor": {"type": "rectangle", "to_world": T().scale(10), "bsdf": {"type": "diffuse", "reflectance": grey(1.0)}},
+             "floor": {"type": "rectangle", "to_world": T().scale(10),
+                       "bsdf": {"type": "diffuse", "reflectance": grey(1.0)}},
              "lamp": {**lamp, "emitter": {"type": "area", "radiance": radiance}}}
     return float(np.array(mi.render(mi.load_dict(scene), seed=1)).mean())
 
